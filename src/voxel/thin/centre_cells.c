@@ -136,7 +136,7 @@ static unsigned add_up(const vxm_meeting *meetings, size_t count, int kind, int6
 
 /** Where the ends of a cell are, from the lowest one: a bit for each that is set, and for each that the view
  * holds. */
-static unsigned ends_set(const vxm_view *view, int64_t (*ends)[3], int count, unsigned *held) {
+static unsigned ends_set(const vxm_view *view, const int64_t (*ends)[3], int count, unsigned *held) {
   unsigned set = 0;
   *held = 0;
   for (int e = 0; e < count; e++)
@@ -147,13 +147,29 @@ static unsigned ends_set(const vxm_view *view, int64_t (*ends)[3], int count, un
   return set;
 }
 
+/** The same where a link along an axis is crossed once, as most are that have no voxel. */
+static bool choose_at_crossing(const vxm_view *view, int32_t offset, int axis, const int64_t lower[3],
+                               int64_t voxel[3]) {
+  int64_t upper[3] = {lower[0], lower[1], lower[2]}, step = view->step[axis];
+  upper[axis]++;
+  const bool has_lower = vxm_view_holds(view, lower), has_upper = vxm_view_holds(view, upper);
+  const int64_t bit = vxm_view_bit(view, lower);
+  if ((has_lower && vxm_view_bit_set(view, bit)) || (has_upper && vxm_view_bit_set(view, bit + step)))
+    return false;
+  const bool is_upper = offset > 0 || (offset == 0 && !has_lower);
+  memcpy(voxel, is_upper ? upper : lower, sizeof upper);
+  return is_upper ? has_upper : has_lower;
+}
+
 bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]) {
   int kind = vxm_cell_kind(meetings[0].cell), axes[3], span = span_of(kind, axes), best = -1;
   int64_t sum[3] = {0, 0, 0}, lowest[3], ends[8][3], nearest = 0;
   unsigned held;
   lowest_of(view, meetings[0].cell, lowest);
+  if (count == 1 && kind < VXM_LINK_AXES)
+    return choose_at_crossing(view, meetings->offset[0], kind, lowest, voxel);
   int ends_count = vxm_cell_ends(ends, kind, lowest);
-  if (ends_set(view, ends, ends_count, &held))
+  if (ends_set(view, (const int64_t(*)[3])ends, ends_count, &held))
     return false;
   held &= add_up(meetings, count, kind, sum);
   for (int e = 0; e < ends_count; e++) {

@@ -159,7 +159,7 @@ static inline uint64_t vxm_kept_brick(vxm_kept_bricks *kept, const vxm_sparse *o
 static inline bool vxm_view_bit_set(const vxm_view *view, int64_t bit) {
   if (!view->words)
     return vxm_view_octree_bit_set(view, bit);
-  return view->words[bit / 64] >> (bit % 64) & 1;
+  return view->words[(uint64_t)bit / 64] >> ((uint64_t)bit % 64) & 1;
 }
 
 static inline bool vxm_view_set(const vxm_view *view, const int64_t voxel[3]) {

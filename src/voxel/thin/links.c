@@ -29,13 +29,14 @@ static frame frame_of(const vxm_thin_job *job, vxm_meetings *meetings, int direc
   return f;
 }
 
-/** Whether the normal of the triangle is longest along w, the lowest axis of equals. */
-static bool is_dominant(const frame *f) {
-  const double *size = f->surface->size;
-  for (int a = 0; a < 3; a++)
-    if (a < f->w ? size[a] >= size[f->w] : size[a] > size[f->w])
-      return false;
-  return f->plain;
+static void measure(vxm_link_surface *surface) {
+  const double *size = surface->size;
+  int longest = size[1] > size[0];
+  longest = size[2] > size[longest] ? 2 : longest;
+  surface->dominant = longest;
+  surface->link_share =
+      size[longest] > 0 ? llrint(vxm_link_surface_length(surface) / size[longest] * VXM_OFFSET_UNIT) : 0;
+  surface->is_measured = true;
 }
 
 /** The ends of the link to voxel `to` of a column. */
@@ -54,11 +55,12 @@ static inline void ends_of(const frame *f, int64_t ends[2][3], int64_t column_u,
 static void put_link(const frame *f, int64_t ends[2][3], double offset) {
   const vxm_view *view = &f->job->view;
   const int64_t *lower = ends[0], *upper = ends[1];
-  bool dominant = is_dominant(f);
+  if (!f->surface->is_measured)
+    measure(f->surface);
+  bool dominant = f->plain && f->surface->dominant == f->w;
   int64_t slice = lower[f->job->slow] < view->begin[f->job->slow] ? upper[f->job->slow] : lower[f->job->slow];
   if (dominant && slice >= f->job->counted[0] && slice < f->job->counted[1])
-    f->meetings->thin_area +=
-        llrint(vxm_link_surface_length(f->surface) / f->surface->size[f->w] * VXM_OFFSET_UNIT);
+    f->meetings->thin_area += f->surface->link_share;
   vxm_thin_stage stage = f->plain
                              ? (dominant ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS)
                              : (f->direction < VXM_LINK_EDGES ? VXM_THIN_EDGE_LINKS : VXM_THIN_CORNER_LINKS);

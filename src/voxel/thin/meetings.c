@@ -4,13 +4,13 @@
 #include <math.h>
 
 /** Whether another one may be put. */
-static bool is_open(vxm_meetings *meetings) {
+static inline bool is_open(vxm_meetings *meetings) {
   meetings->is_full |= meetings->count + meetings->in_cubes_count >= meetings->most;
   return meetings->error.code == VXM_OK && !meetings->is_full;
 }
 
 /** Room for another one, or NULL. */
-static vxm_meeting *next_of(vxm_meetings *meetings) {
+static inline vxm_meeting *next_of(vxm_meetings *meetings) {
   if (!is_open(meetings))
     return NULL;
   if (meetings->count == meetings->capacity &&

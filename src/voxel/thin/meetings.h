@@ -37,7 +37,10 @@ void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, co
 
 /** The normal of a triangle, as twice its area. */
 typedef struct vxm_link_surface {
-  double size[3]; /**< of its components */
+  double size[3];     /**< of its components */
+  bool is_measured;   /**< what follows is known: few triangles want it */
+  int dominant;       /**< the axis along which it is longest, the lowest of equals */
+  int64_t link_share; /**< its area for each link along that axis, in parts of a square of voxels */
 } vxm_link_surface;
 
 /** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
@@ -46,8 +49,8 @@ static inline vxm_link_surface vxm_link_surface_of(const vxm_point corner[3]) {
   const double x[2] = {(double)(one[0] - from[0]), (double)(two[0] - from[0])},
                y[2] = {(double)(one[1] - from[1]), (double)(two[1] - from[1])},
                z[2] = {(double)(one[2] - from[2]), (double)(two[2] - from[2])};
-  return (vxm_link_surface){
-      {fabs(y[0] * z[1] - z[0] * y[1]), fabs(z[0] * x[1] - x[0] * z[1]), fabs(x[0] * y[1] - y[0] * x[1])}};
+  return (vxm_link_surface){.size = {fabs(y[0] * z[1] - z[0] * y[1]), fabs(z[0] * x[1] - x[0] * z[1]),
+                                     fabs(x[0] * y[1] - y[0] * x[1])}};
 }
 
 static inline double vxm_link_surface_length(const vxm_link_surface *surface) {
@@ -63,9 +66,9 @@ static inline double vxm_link_surface_length(const vxm_link_surface *surface) {
 typedef struct vxm_link_frame {
   const vxm_thin_job *job;
   vxm_meetings *meetings;
-  vxm_kept_bricks *kept;           /**< of the thread, if the view is of an octree */
-  size_t triangle;                 /**< that is looked at */
-  const vxm_link_surface *surface; /**< its own */
+  vxm_kept_bricks *kept;     /**< of the thread, if the view is of an octree */
+  size_t triangle;           /**< that is looked at */
+  vxm_link_surface *surface; /**< its own */
   int direction, u, v, w;
   int inner;  /**< see vxm_octree_sieve_search */
   bool plain; /**< along an axis: no shear */

@@ -348,7 +348,7 @@ void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ)
     meet_polygon(frames[0].meetings, job, triangle, points);
     return;
   }
-  vxm_link_surface surface = links ? vxm_link_surface_of(points) : (vxm_link_surface){{0}};
+  vxm_link_surface surface = links ? vxm_link_surface_of(points) : (vxm_link_surface){.size = {0}};
   for (int d = 0; d < VXM_LINK_AXES && links && !alone; d++) {
     frames[d].triangle = triangle;
     frames[d].surface = &surface;

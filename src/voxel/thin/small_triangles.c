@@ -221,7 +221,7 @@ static bool keep_links(vxm_link_frame *frames, size_t triangle, const small *s, 
   }
   if (empty == 0)
     return true;
-  vxm_link_surface surface;
+  vxm_link_surface surface = {.is_measured = false};
   for (int a = 0; a < 3; a++)
     surface.size[a] = (double)(plane.normal[a] < 0 ? -plane.normal[a] : plane.normal[a]);
   for (int axis = 0; axis < 3; axis++) {

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/thin/thin.h"
 #include "base/threads.h"
+#include "voxel/thin/added_voxels.h"
 #include "voxel/thin/sieve.h"
 #include "voxel/thin/sieve_kernels.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum {
-  TASK_LEAST = VXM_SIEVE_BATCH,
   TASK_MOST = 1 << 14, /**< triangles of which maps leave few */
   TASKS_PER_THREAD = 8
 };
@@ -82,209 +81,12 @@ static void look_at_cubes(size_t list, int worker, void *payload) {
   vxm_meet_cubes(&s->thin->found[list], s->job);
 }
 
-/* ---- Sorting ---- */
-
-enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
-
-/** How numbers of cells are taken apart: bits that none of them has are left out. */
-typedef struct digits {
-  int voxel_bits; /**< below the kind */
-  int bits, count;
-} digits;
-
-static digits digits_of(const vxm_meeting *meetings, size_t count) {
-  enum { KIND_BITS = 64 - VXM_CELL_VOXEL_BITS };
-  uint64_t any = 0;
-  for (size_t m = 0; m < count; m++)
-    any |= meetings[m].cell;
-  digits d = {.voxel_bits = 0};
-  while (d.voxel_bits < VXM_CELL_VOXEL_BITS && (any & vxm_low_bits(VXM_CELL_VOXEL_BITS)) >> d.voxel_bits != 0)
-    d.voxel_bits++;
-  d.count = (d.voxel_bits + KIND_BITS + DIGIT_BITS - 1) / DIGIT_BITS;
-  d.bits = (d.voxel_bits + KIND_BITS + d.count - 1) / d.count;
-  return d;
-}
-
-static inline size_t digit_of(const digits *d, uint64_t cell, int place) {
-  uint64_t number = (cell & vxm_low_bits(VXM_CELL_VOXEL_BITS)) | cell >> VXM_CELL_VOXEL_BITS << d->voxel_bits;
-  return (size_t)(number >> place * d->bits & vxm_low_bits((unsigned)d->bits));
-}
-
-/** A pass of a stable sort. */
-static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, const digits *d,
-                          int place) {
-  size_t next[DIGITS], total = 0;
-  memset(next, 0, sizeof *next << d->bits);
-  for (size_t m = 0; m < count; m++)
-    next[digit_of(d, from[m].cell, place)]++;
-  for (int i = 0; i < 1 << d->bits; i++) {
-    size_t here = next[i];
-    next[i] = total;
-    total += here;
-  }
-  for (size_t m = 0; m < count; m++)
-    to[next[digit_of(d, from[m].cell, place)]++] = from[m];
-}
-
-static int compare(const void *a, const void *b) {
-  const vxm_meeting *p = a, *q = b;
-  if (p->cell != q->cell)
-    return p->cell < q->cell ? -1 : 1;
-  return (p->detail > q->detail) - (p->detail < q->detail);
-}
-
-/** Sorts a few, by cells and polygons. */
-static void sort_few(vxm_meeting *meetings, size_t count) {
-  const size_t few = 64;
-  if (count > few) {
-    qsort(meetings, count, sizeof *meetings, compare);
-    return;
-  }
-  for (size_t m = 1; m < count; m++) {
-    vxm_meeting one = meetings[m];
-    size_t to = m;
-    for (; to > 0 && compare(&meetings[to - 1], &one) > 0; to--)
-      meetings[to] = meetings[to - 1];
-    meetings[to] = one;
-  }
-}
-
-/** Sorts meetings by cells, those with links by polygon, too. `from` is overwritten; returns which of the two
- * has them. */
-static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t count) {
-  const size_t few = 32; /* less than digits */
-  if (count <= few) {
-    sort_few(from, count);
-    return from;
-  }
-  const digits d = digits_of(from, count);
-  for (int place = 0; place < d.count; place++) {
-    sort_by_digit(to, from, count, &d, place);
-    vxm_meeting *sorted = to;
-    to = from;
-    from = sorted;
-  }
-  for (size_t m = 0, next; m < count && vxm_cell_kind(from[m].cell) < VXM_LINK_DIRECTIONS; m = next) {
-    bool polygons = false;
-    for (next = m; next < count && from[next].cell == from[m].cell; next++)
-      polygons |= from[next].detail != 0;
-    if (polygons)
-      sort_few(from + m, next - m);
-  }
-  return from;
-}
-
-/* ---- Choosing ---- */
-
-/** Where voxels go: into the words of a view, or into a set beside its octree. */
-typedef struct target {
-  vxm_voxel_set *added; /**< NULL = the words */
-  uint8_t *confidence;  /**< NULL = not asked for */
-} target;
-
-static vxm_status set_voxel(vxm_thin_adder *thin, const vxm_thin_job *job, const target *to,
-                            const int64_t voxel[3], vxm_error *error) {
-  const vxm_view *view = &job->view;
-  const int64_t *dims = job->placed->lattice.space.dims;
-  int64_t bit = vxm_view_bit(view, voxel);
-  bool counted = voxel[job->slow] >= job->counted[0] && voxel[job->slow] < job->counted[1];
-  thin->added += counted;
-  if (to->confidence && counted) /* slices around are not right */
-    to->confidence[(voxel[2] * dims[1] + voxel[1]) * dims[0] + voxel[0]] = 255;
-  if (to->added)
-    return vxm_voxel_set_add(to->added, (uint64_t)bit, error);
-  view->words[bit / 64] |= UINT64_C(1) << (bit % 64);
-  return VXM_OK;
-}
-
-/** The coordinates of a voxel side by side. */
-static uint64_t pack(const int64_t voxel[3]) {
-  return (uint64_t)(voxel[0] | voxel[1] << VXM_VIEW_AXIS_BITS | voxel[2] << 2 * VXM_VIEW_AXIS_BITS);
-}
-
-static void unpack(int64_t voxel[3], uint64_t packed) {
-  for (int a = 0; a < 3; a++)
-    voxel[a] = (int64_t)(packed >> VXM_VIEW_AXIS_BITS * a & ((UINT64_C(1) << VXM_VIEW_AXIS_BITS) - 1));
-}
-
-/** Chooses for each link, square or cube of one stage, by what is set before it, and sets the voxels then: so
- * the order within a stage does not matter, and what is added depends on what is near only. */
-static vxm_status apply_stage(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_meeting *meetings,
-                              size_t count, const target *to, vxm_error *error) {
-  size_t chosen = 0, cell = 0;
-  int64_t voxel[3];
-  vxm_status status = VXM_OK;
-  for (size_t m = 0, next; m < count && status == VXM_OK; m = next, cell++) {
-    for (next = m + 1; next < count && meetings[next].cell == meetings[m].cell; next++)
-      ;
-    if (thin->chosen_room == chosen)
-      status = vxm_grow(thin->context, (void **)&thin->chosen, &thin->chosen_room, chosen + 1,
-                        sizeof *thin->chosen, error);
-    if (status == VXM_OK && vxm_cell_choose(&job->view, meetings + m, next - m, voxel))
-      thin->chosen[chosen++] = pack(voxel);
-    if (status == VXM_OK)
-      status = vxm_ask_at(cell, thin->context, error);
-  }
-  for (size_t c = 0; c < chosen && status == VXM_OK; c++) {
-    unpack(voxel, thin->chosen[c]);
-    if (!vxm_view_set(&job->view, voxel))
-      status = set_voxel(thin, job, to, voxel, error);
-  }
-  return status;
-}
-
-/** Sets the voxels that the meetings ask for, stage by stage. */
-static vxm_status apply(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_meeting *meetings,
-                        size_t count, const target *to, vxm_error *error) {
-  vxm_status status = VXM_OK;
-  for (size_t m = 0, next; m < count && status == VXM_OK; m = next) {
-    vxm_thin_stage stage = vxm_cell_stage(meetings[m].cell);
-    for (next = m + 1; next < count && vxm_cell_stage(meetings[next].cell) == stage; next++)
-      ;
-    status = apply_stage(thin, job, meetings + m, next - m, to, error);
-  }
-  return status;
-}
-
 /** Whether the lists did not have room for all. */
 static bool are_too_many(const vxm_thin_adder *thin) {
   bool full = false;
   for (int w = 0; w < thin->threads; w++)
     full |= thin->found[w].is_full;
   return full;
-}
-
-/** All meetings in one list, and as much room besides. That of a thread that found all stays where it is. */
-static vxm_status gather(vxm_thin_adder *thin, vxm_meeting *lists[2], size_t *count, vxm_error *error) {
-  size_t total = 0;
-  vxm_meetings *all = NULL;
-  for (int w = 0; w < thin->threads; w++) {
-    if (thin->found[w].error.code != VXM_OK) {
-      vxm_error_pass(error, &thin->found[w].error);
-      return thin->found[w].error.code;
-    }
-    total += thin->found[w].count;
-  }
-  *count = total;
-  if (total == 0)
-    return VXM_OK;
-  for (int w = 0; w < thin->threads; w++)
-    all = thin->found[w].count == total ? &thin->found[w] : all;
-  vxm_status status = VXM_OK;
-  size_t room = all ? total : 2 * total;
-  if (room > thin->capacity) /* a quarter more, not to grow for each that is a little larger */
-    status = vxm_renew(thin->context, (void **)&thin->scratch, &thin->capacity, room + room / 4,
-                       sizeof *thin->scratch, error);
-  lists[0] = all ? all->list : thin->scratch;
-  lists[1] = all ? thin->scratch : thin->scratch + total;
-  size_t at = 0;
-  for (int w = 0; w < thin->threads && status == VXM_OK && !all; w++) {
-    vxm_meetings *found = &thin->found[w];
-    if (found->count > 0)
-      memcpy(thin->scratch + at, found->list, found->count * sizeof *found->list);
-    at += found->count;
-  }
-  return status;
 }
 
 uint64_t vxm_thin_budget(const vxm_context *context) {
@@ -320,25 +122,25 @@ static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error
   return VXM_OK;
 }
 
-/** Triangles of a task. */
+/** Triangles of a task: many where there are, as they are sifted together, and maps leave few of them. */
 static size_t task_of(const vxm_thin_adder *thin, const vxm_thin_job *job) {
-  size_t share = count_looked_at(job) / ((size_t)vxm_context_threads(thin->context) * TASKS_PER_THREAD);
-  return !job->middles || share < TASK_LEAST ? TASK_LEAST : least(share, TASK_MOST);
+  size_t threads = (size_t)vxm_context_threads(thin->context),
+         share = count_looked_at(job) / (threads * TASKS_PER_THREAD);
+  if (threads == 1 && share < VXM_SIEVE_BATCH)
+    return VXM_SIEVE_BATCH;
+  return least(share > 0 ? share : 1, job->middles ? TASK_MOST : VXM_SIEVE_BATCH);
 }
 
 /** Sets the voxels that what has been found asks for. */
-static vxm_status apply_found(vxm_thin_adder *thin, const vxm_thin_job *job, const target *to,
+static vxm_status apply_found(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_added_voxels *to,
                               vxm_error *error) {
-  size_t count = 0;
-  vxm_meeting *lists[2];
-  vxm_status status = gather(thin, lists, &count, error);
-  if (status != VXM_OK || count == 0)
-    return status;
-  return apply(thin, job, sort_meetings(lists[0], lists[1], count), count, to, error);
+  thin->slabs.context = thin->context;
+  vxm_status status = vxm_meeting_slabs_sort(&thin->slabs, thin->found, thin->threads, &job->view, error);
+  return status == VXM_OK ? vxm_add_voxels(to, job, &thin->slabs, &thin->added, error) : status;
 }
 
 /** Sets the voxels of cubes, behind all others. */
-static vxm_status add_cubes(vxm_thin_adder *thin, search *s, const target *to, vxm_error *error) {
+static vxm_status add_cubes(vxm_thin_adder *thin, search *s, const vxm_added_voxels *to, vxm_error *error) {
   bool any = false;
   for (int w = 0; w < thin->threads; w++) {
     thin->found[w].count = 0;
@@ -350,7 +152,7 @@ static vxm_status add_cubes(vxm_thin_adder *thin, search *s, const target *to, v
   return status == VXM_OK ? apply_found(thin, s->job, to, error) : status;
 }
 
-static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to, bool *too_many,
+static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_added_voxels *to, bool *too_many,
                       vxm_error *error) {
   search s = {thin, job, task_of(thin, job)};
   size_t tasks = (count_looked_at(job) + s.task - 1) / s.task;
@@ -363,7 +165,7 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
   }
   for (int w = 0; w < thin->threads; w++)
     thin->area += thin->found[w].thin_area;
-  job->view.added = to->added;
+  job->view.added = to->set;
   if (status == VXM_OK)
     status = apply_found(thin, job, to, error);
   return status == VXM_OK ? add_cubes(thin, &s, to, error) : status;
@@ -419,7 +221,7 @@ vxm_status vxm_thin_add(vxm_thin_adder *thin, const vxm_window *window, int64_t 
                       .counted = {begin, end},
                       .slow = window->layout.slow,
                       .directions = separating == 26 ? VXM_LINK_DIRECTIONS : VXM_LINK_AXES};
-  target to = {NULL, confidence};
+  vxm_added_voxels to = {NULL, confidence};
   vxm_status status = VXM_OK;
   make_middles(thin, &job, window);
   if (!job.middles)
@@ -437,7 +239,7 @@ vxm_status vxm_thin_find(vxm_thin_adder *thin, vxm_voxel_set *added, const vxm_s
                       .counted = {begin, end},
                       .slow = 2,
                       .directions = separating == 26 ? VXM_LINK_DIRECTIONS : VXM_LINK_AXES};
-  target to = {added, NULL};
+  vxm_added_voxels to = {added, NULL};
   job.view.begin[2] = vxm_max(begin - vxm_thin_margin(separating), 0);
   job.view.end[2] = vxm_min(end + vxm_thin_margin(separating), solid->space.dims[2]);
   return add(thin, &job, &to, too_many, error);
@@ -449,10 +251,9 @@ void vxm_thin_destroy(vxm_thin_adder *thin) {
     vxm_free(thin->context, thin->found[w].in_cubes);
   }
   vxm_free(thin->context, thin->found);
-  vxm_free(thin->context, thin->scratch);
   vxm_free(thin->context, thin->maps);
   vxm_free(thin->context, thin->short_cells);
   vxm_slice_order_destroy(&thin->order);
-  vxm_free(thin->context, thin->chosen);
+  vxm_meeting_slabs_destroy(&thin->slabs);
   *thin = (vxm_thin_adder){.context = thin->context};
 }

@@ -14,7 +14,7 @@
 #ifndef VXM_VOXEL_THIN_THIN_H
 #define VXM_VOXEL_THIN_THIN_H
 
-#include "voxel/thin/meetings.h"
+#include "voxel/thin/meeting_slabs.h"
 #include "voxel/thin/slice_order.h"
 #include "voxel/thin/voxel_set.h"
 
@@ -29,15 +29,12 @@ typedef struct vxm_thin_adder {
   vxm_context *context;
   vxm_meetings *found; /**< of each thread */
   int threads;
-  vxm_meeting *scratch;
-  size_t capacity; /**< of `scratch` */
-  uint64_t *maps;  /**< see vxm_thin_job */
+  vxm_meeting_slabs slabs;
+  uint64_t *maps; /**< see vxm_thin_job */
   size_t map_words;
   uint32_t *short_cells;
   size_t short_room;
   vxm_slice_order order;
-  uint64_t *chosen; /**< voxels of one stage */
-  size_t chosen_room;
   int64_t added;
   int64_t area; /**< of the surface that had no voxel beside it, as vxm_meetings has it */
 } vxm_thin_adder;
