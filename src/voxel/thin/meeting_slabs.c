@@ -6,10 +6,8 @@
 
 #include <string.h>
 
-typedef vxm_meeting_slabs slabs_of;
-
 typedef struct sorting {
-  slabs_of *slabs;
+  vxm_meeting_slabs *slabs;
   const vxm_meetings *found;
   unsigned shift; /**< of the number of a cell's voxel, to that of its slab */
   size_t total;
@@ -62,7 +60,7 @@ static void sort_slab(size_t number, int worker, void *payload) {
 
 /** A slab for each of some ranges of cells. */
 static vxm_status sort_many(sorting *s, int threads, const vxm_view *view, vxm_error *error) {
-  slabs_of *slabs = s->slabs;
+  vxm_meeting_slabs *slabs = s->slabs;
   uint64_t cells = 1;
   for (int a = 0; a < 3; a++)
     cells *= (uint64_t)(view->end[a] - view->begin[a] + 2);
@@ -81,7 +79,7 @@ static vxm_status sort_many(sorting *s, int threads, const vxm_view *view, vxm_e
 }
 
 /** All in one slab. The list of a thread that found all stays where it is. */
-static void sort_one(slabs_of *slabs, const vxm_meetings *found, int threads, size_t total) {
+static void sort_one(vxm_meeting_slabs *slabs, const vxm_meetings *found, int threads, size_t total) {
   vxm_meeting *from = slabs->room, *to = slabs->room;
   size_t at = 0;
   for (int w = 0; w < threads; w++) {
@@ -96,8 +94,8 @@ static void sort_one(slabs_of *slabs, const vxm_meetings *found, int threads, si
   slabs->count = 1;
 }
 
-vxm_status vxm_meeting_slabs_sort(slabs_of *slabs, vxm_meetings *found, int threads, const vxm_view *view,
-                                  vxm_error *error) {
+vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, vxm_meetings *found, int threads,
+                                  const vxm_view *view, vxm_error *error) {
   /* Fewer are sorted sooner than taken apart; one thread gains where they do not stay in the cache. */
   const size_t many = vxm_context_threads(slabs->context) > 1 ? 1 << 13 : 1 << 17;
   sorting s = {.slabs = slabs, .found = found};
@@ -127,8 +125,8 @@ vxm_status vxm_meeting_slabs_sort(slabs_of *slabs, vxm_meetings *found, int thre
   return VXM_OK;
 }
 
-void vxm_meeting_slabs_destroy(slabs_of *slabs) {
+void vxm_meeting_slabs_destroy(vxm_meeting_slabs *slabs) {
   vxm_free(slabs->context, slabs->room);
   vxm_free(slabs->context, slabs->starts);
-  *slabs = (slabs_of){.context = slabs->context};
+  *slabs = (vxm_meeting_slabs){.context = slabs->context};
 }
