@@ -20,6 +20,8 @@ from ._types import Array
 class GridDataset(Dataset):
     """The grids that `voxmend batch` has made: its folder, or an export to webdataset or Zarr (`voxmend batch export`).
 
+    Numbers, such as distances and labels, are no voxels: they raise NumbersError, as in `voxmend.read`.
+
     Args:
         root: the folder.
         split: only those of this split, as the plan tells or the folders (chair/train/...); None = all.

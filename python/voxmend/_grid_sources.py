@@ -15,8 +15,10 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 import numpy
 
 from ._batch_records import Records
-from ._errors import ArgumentError, EmptyError, FormatError, UnavailableError
+from ._core import lib
+from ._errors import ArgumentError, EmptyError, FormatError, NumbersError, UnavailableError
 from ._export_common import packed_grid, with_grids
+from ._field import VALUE_KINDS, VoxelField
 from ._packed import pack
 from ._types import Array
 
@@ -93,23 +95,53 @@ def _lines(path: str) -> Iterator[Dict[str, Any]]:
                 raise FormatError("%s: a line is no JSON" % path) from None
 
 
+def _array_in(data: bytes, where: str, name: str) -> Array:
+    try:
+        array: Array = numpy.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
+    except ValueError:
+        raise FormatError("%s: no .npy where the index has that of %s" % (where, name)) from None
+    return array
+
+
+def _kind_in(data: bytes, where: str, name: str) -> Optional[str]:
+    """What the .json of an array says that its values are; None if it says nothing."""
+    try:
+        kind = json.loads(data).get("values") if data else None
+    except (ValueError, AttributeError):
+        raise FormatError("%s: no .json where the index has that of %s" % (where, name)) from None
+    return kind if kind in VALUE_KINDS else None
+
+
+def _need_mask(array: Array, kind: Optional[str], where: str, name: str) -> Array:
+    """The array, if `read` would take it for set and clear voxels: the library decides, as there."""
+    if array.dtype == numpy.bool_ and kind is None:
+        return array
+    is_mask = array.ndim == 3 and kind != "colors"
+    if not is_mask or not lib.vxm_field_is_mask(VoxelField(array, kind=kind or "numbers")._pointer):
+        raise NumbersError("%s: of %s it holds numbers (%s), not set and clear voxels; voxmend.read_field reads them in the "
+                           "folder of the batch" % (where, name, kind or array.dtype))
+    return array
+
+
 class TarSource(Source):
     """Tars with their index.jsonl, read where each grid stands."""
 
     def __init__(self, path: str):
-        told, tars = _Told(), []  # type: Tuple[_Told, List[Tuple[int, int, int, bool]]]
+        told, tars = _Told(), []  # type: Tuple[_Told, List[Tuple[int, ...]]]
         self.tars: List[str] = []
         numbers: Dict[str, int] = {}
         for line in _lines(os.path.join(path, "index.jsonl")):
-            member = next((m for m in line["members"] if m["name"] in ("bits.npy", "npy")), None)
+            members = {member["name"]: member for member in line["members"]}
+            member = members.get("bits.npy") or members.get("npy")
             if member is None:
                 raise ArgumentError("%s: %s is there neither as bits.npy nor as npy; export the batch with --content bits" %
                                     (path, line["item"]))
             told.add(line, path)
             tar = numbers.setdefault(line["tar"], len(numbers))
-            tars.append((tar, member["offset"], member["bytes"], member["name"] == "npy"))
+            beside = members.get("npy.json", {"offset": 0, "bytes": 0})
+            tars.append((tar, member["offset"], member["bytes"], member["name"] == "npy", beside["offset"], beside["bytes"]))
         self.tars = [os.path.join(path, name) for name in numbers]
-        self.places = numpy.array(tars, numpy.int64).reshape(-1, 4)
+        self.places = numpy.array(tars, numpy.int64).reshape(-1, 6)
         self._open: "collections.OrderedDict[int, Any]" = collections.OrderedDict()
         super().__init__(told, self.places[:, 0].copy(), path)
 
@@ -130,13 +162,13 @@ class TarSource(Source):
         return int(self._open[tar].fileno())
 
     def packed(self, number: int) -> Array:
-        tar, offset, size, is_plain = self.places[number].tolist()
-        data = os.pread(self._descriptor(tar), size, offset)
-        try:
-            array = numpy.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
-        except ValueError:
-            raise FormatError("%s: no .npy where the index has that of %s" % (self.tars[tar], self.names[number])) from None
-        return self.check(number, pack(array) if is_plain else array)
+        tar, offset, size, is_plain, beside, beside_size = self.places[number].tolist()
+        where, name = self.tars[tar], self.names[number]
+        array = _array_in(os.pread(self._descriptor(tar), size, offset), where, name)
+        if is_plain:
+            kind = _kind_in(os.pread(self._descriptor(tar), beside_size, beside), where, name)
+            array = pack(_need_mask(array, kind, where, name))
+        return self.check(number, array)
 
 
 class ZarrSource(Source):
