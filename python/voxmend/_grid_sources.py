@@ -10,15 +10,16 @@ import collections
 import io
 import json
 import os
-from typing import Any, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Collection, Dict, Iterator, List, Optional, Tuple
 
 import numpy
 
 from ._batch_records import Records
 from ._core import lib
 from ._errors import ArgumentError, EmptyError, FormatError, NumbersError, UnavailableError
-from ._export_common import packed_grid, with_grids
+from ._export_common import describe, packed_grid, with_grids
 from ._field import VALUE_KINDS, VoxelField
+from ._grid import read
 from ._packed import pack
 from ._types import Array
 
@@ -68,22 +69,32 @@ class Source:
         return bits
 
 
+def _places(records: Records) -> List[Tuple[int, int]]:
+    """Number in the plan and number of the variant, of all grids; -1 = the grid itself. Variants count where no mesh has one."""
+    grids = [(number, -1) for number, item in enumerate(records) if item.grid() is not None]
+    if not grids:
+        grids = [(number, v) for number, item in enumerate(records) for v in range(item.variant_count)]
+    return grids or [(number, -1) for number in with_grids(records)]  # which says why there are none
+
+
 class FolderSource(Source):
     """The outputs of a batch as they are."""
 
     def __init__(self, path: str):
         self.records = Records(path)
         self.records.need_complete()
-        self.numbers = numpy.array(with_grids(self.records), numpy.int64)
+        self.places = numpy.array(_places(self.records), numpy.int64)
         told = _Told()
-        for number in self.numbers:
-            item = self.records[number]
-            told.add({"item": item.item, "class": item.kind, "split": item.split,
-                      "shape": item.end.get("voxelize", {}).get("grid", {}).get("dims")}, path)
+        for number, _ in self.places:
+            told.add(describe(self.records[number]), path)
         super().__init__(told, numpy.arange(len(told.names)), path)
 
     def packed(self, number: int) -> Array:
-        return self.check(number, packed_grid(self.records, self.records[int(self.numbers[number])], False)[0])
+        place, variant = self.places[number].tolist()
+        item = self.records[place]
+        if variant >= 0:
+            return self.check(number, pack(read(self.records.path(item.variant(variant))).matrix))
+        return self.check(number, packed_grid(self.records, item, False)[0])
 
 
 def _lines(path: str) -> Iterator[Dict[str, Any]]:
@@ -123,6 +134,18 @@ def _need_mask(array: Array, kind: Optional[str], where: str, name: str) -> Arra
     return array
 
 
+def _arrays_of(line: Dict[str, Any], members: Collection[str], where: str) -> List[str]:
+    """The grid among the files of a mesh, or its variants, where no grid was made."""
+    has_grid = line["origin"] is not None
+    wanted = [name for name in ("bits.npy", "npy") if name in members][:1] if has_grid else \
+        sorted(name for name in members if name.startswith("variants.") and name.endswith(".npy"))
+    if not wanted:
+        raise ArgumentError("%s: of %s there is no %s" % (where, line["item"], "grid as bits.npy or npy; export the batch with "
+                            "--content bits" if has_grid else "grid, and no variant as .npy; make the batch with grids, or with "
+                            "--augment \"... --format npy\""))
+    return wanted
+
+
 class TarSource(Source):
     """Tars with their index.jsonl, read where each grid stands."""
 
@@ -132,14 +155,11 @@ class TarSource(Source):
         numbers: Dict[str, int] = {}
         for line in _lines(os.path.join(path, "index.jsonl")):
             members = {member["name"]: member for member in line["members"]}
-            member = members.get("bits.npy") or members.get("npy")
-            if member is None:
-                raise ArgumentError("%s: %s is there neither as bits.npy nor as npy; export the batch with --content bits" %
-                                    (path, line["item"]))
-            told.add(line, path)
             tar = numbers.setdefault(line["tar"], len(numbers))
-            beside = members.get("npy.json", {"offset": 0, "bytes": 0})
-            tars.append((tar, member["offset"], member["bytes"], member["name"] == "npy", beside["offset"], beside["bytes"]))
+            for name in _arrays_of(line, members, path):
+                told.add(line, path)
+                member, beside = members[name], members.get(name + ".json", {"offset": 0, "bytes": 0})
+                tars.append((tar, member["offset"], member["bytes"], name != "bits.npy", beside["offset"], beside["bytes"]))
         self.tars = [os.path.join(path, name) for name in numbers]
         self.places = numpy.array(tars, numpy.int64).reshape(-1, 6)
         self._open: "collections.OrderedDict[int, Any]" = collections.OrderedDict()

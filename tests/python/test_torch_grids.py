@@ -95,7 +95,8 @@ class Grids(unittest.TestCase):
         folder = tempfile.mkdtemp(dir=self.folder.name)
         files = [("npy", io.BytesIO())] + ([("npy.json", io.BytesIO(json.dumps(said).encode()))] if said else [])
         numpy.save(files[0][1], array)
-        line = {"item": "a.off", "class": "a", "split": "", "shape": list(array.shape[:3]), "voxels": 1, "tar": "x", "members": []}
+        line = {"item": "a.off", "class": "a", "split": "", "shape": list(array.shape[:3]), "origin": [0, 0, 0], "tar": "x",
+                "members": []}
         with open(os.path.join(folder, "x"), "wb") as tar:
             for name, file in files:
                 line["members"].append({"name": name, "offset": tar.tell(), "bytes": len(file.getvalue())})
@@ -136,6 +137,40 @@ class Grids(unittest.TestCase):
                         self.assertTrue((data[0][0][0].numpy() == wanted).all(), (dtype, factor, kind))
         with self.assertRaises(voxmend.NumbersError):
             self.rewritten(numpy.zeros((3, 4, 5, 4), numpy.uint8))[0]
+
+    def test_variants(self):
+        """Of a batch without grids they are the items, from the folder and the tars; else the grids are."""
+        meshes, out, tars = (os.path.join(self.folder.name, name) for name in ("in", "variants", "variant-tars"))
+        draws = '--augment "-n 3 -r 10 --rotate any --format %s"'
+        voxmend.batch.run(meshes, out, options="--no-grid " + draws % "npy")
+        voxmend.batch.export(out, tars, to="webdataset", content="files", shuffle=1, max_bytes=30000)
+        folder, files = GridDataset(out, "train"), GridDataset(tars, "train")
+        self.assertEqual((len(folder), folder.shape, folder.classes), (24, (10, 10, 10), ["ball", "prism", "ring"]))
+        self.assertEqual(folder.names[:4], 3 * ["ball/train/flipped 0.v1.off"] + ["ball/train/repeated 0.v1.off"])
+        found = {}
+        for data in folder, files:
+            for i, name in enumerate(data.names):
+                found.setdefault(name, []).append(data[i][0])
+                self.assertEqual(data.classes[data[i][1]], name.split("/")[0])
+        for name, voxels in found.items():
+            self.assertEqual(len(voxels), 6)
+            for v in range(3):
+                path = os.path.join(out, name[:-len(".off")] + ".variants", "%06d.npy" % v)
+                self.assertTrue((voxels[v][0].numpy() == numpy.load(path)).all())
+                self.assertTrue((voxels[v] == voxels[v + 3]).all())
+        for path in (out, tars):
+            remove(path)
+        voxmend.batch.run(meshes, out, options="-r 12 --format npy " + draws % "rle")
+        voxmend.batch.export(out, tars, to="webdataset", content="files")
+        for data in GridDataset(out), GridDataset(tars):
+            self.assertEqual((len(data), data.shape), (11, (12, 12, 12)))
+        for path in (out, tars):
+            remove(path)
+        voxmend.batch.run(os.path.join(meshes, "prism"), out, options="--no-grid " + draws % "rle")
+        self.assertEqual(len(GridDataset(out)), 9)
+        voxmend.batch.export(out, tars, to="webdataset", content="files")
+        with self.assertRaisesRegex(voxmend.ArgumentError, "no variant as .npy.*--format npy"):
+            GridDataset(tars)
 
     def test_refusals(self):
         voxmend.batch.export(self.out, self.files, to="webdataset", content="files")
