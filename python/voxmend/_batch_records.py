@@ -11,7 +11,7 @@ from typing import Any, Dict, Iterator, NamedTuple, Optional, Tuple
 from ._errors import ArgumentError, FormatError
 
 GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb", ".octree", ".bt", ".nii", ".nii.gz", ".vti", ".vtk", ".tif", ".h5",
-         ".vox", ".schem", ".litematic")
+         ".vox", ".schem", ".litematic", ".zarr")
 DONE = ("ok", "degraded", "duplicate")
 _HEAD, _SUM, _TAIL = b'{"sum":"', 16, b'",'
 _REST = len(_HEAD) + _SUM + len(_TAIL)
@@ -44,6 +44,18 @@ class Item(NamedTuple):
             if output["path"] in wanted:
                 return dict(output)
         return None
+
+    @property
+    def variant_count(self) -> int:
+        """How many variants were made of it (--augment)."""
+        folder = self.plan["output"] + ".variants"
+        is_there = any(output["path"] == folder for output in self.end.get("outputs", ()) if self.status in DONE)
+        return int(self.end.get("augment", {}).get("variants", 0)) if is_there else 0
+
+    def variant(self, index: int) -> Dict[str, Any]:
+        """The output that is one of them, from 0 on: {path}."""
+        made = self.end["augment"]
+        return {"path": "%s.variants/%06d.%s" % (self.plan["output"], made["first"] + index, made["format"])}
 
 
 def _place(plan: Dict[str, Any]) -> Tuple[str, str]:

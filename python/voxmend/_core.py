@@ -65,8 +65,7 @@ def failure(status: int, error: Any, path: Any = None) -> _errors.VoxmendError:
     if status == lib.VXM_ERROR_IO:
         made: _errors.VoxmendError = _errors.file_error(message, error.system, file, path)
     else:
-        advice = in_python(message) if status == lib.VXM_ERROR_MEMORY_LIMIT else message
-        made = _classes.get(status, _errors.VoxmendError)(advice)
+        made = _classes.get(status, _errors.VoxmendError)(in_python(message))
     made.status = text(lib.vxm_status_name(status))
     made.file = file.decode("utf-8", "replace")
     made.line, made.offset, made.element = error.line, error.offset, error.element

@@ -36,18 +36,47 @@ def published(path: str, is_folder: bool) -> Iterator[str]:
         raise
 
 
+def is_folder(output: Dict[str, Any]) -> bool:
+    return "files" in output
+
+
+def _read(path: str) -> Tuple[bytes, str]:
+    """The bytes of a file, and their SHA-256."""
+    with open(path, "rb") as file:
+        data = file.read()
+    return data, hashlib.sha256(data).hexdigest()
+
+
+def _need_digest(records: Records, output: Dict[str, Any], digest: str) -> None:
+    if digest != output["sha256"]:
+        raise FormatError("%s: not as it was written; see 'voxmend batch verify %s'" % (records.path(output), records.folder))
+
+
 def content(records: Records, output: Dict[str, Any]) -> bytes:
     """The bytes of an output, if they are those that the journal tells of."""
-    with open(records.path(output), "rb") as file:
-        data = file.read()
-    if hashlib.sha256(data).hexdigest() != output["sha256"]:
-        raise FormatError("%s: not as it was written; see 'voxmend batch verify %s'" % (records.path(output), records.folder))
+    data, digest = _read(records.path(output))
+    _need_digest(records, output, digest)
     return data
+
+
+def folder_content(records: Records, output: Dict[str, Any]) -> List[Tuple[str, bytes]]:
+    """Names and bytes of the files of an output that is a folder, if they are those that the journal tells of."""
+    path, files, told = records.path(output), [], hashlib.sha256()
+    for name in sorted(os.listdir(path), key=os.fsencode):
+        if os.path.isfile(os.path.join(path, name)):
+            data, digest = _read(os.path.join(path, name))
+            told.update(b"%s %s\n" % (os.fsencode(name), digest.encode()))
+            files.append((name, data))
+    _need_digest(records, output, told.hexdigest())
+    return files
 
 
 def with_grids(records: Records) -> List[int]:
     """Numbers of those of which there is a grid, in the order of the plan."""
     out = [number for number, item in enumerate(records) if item.grid() is not None]
+    if not out and any(item.variant_count for item in records):
+        raise EmptyError("%s: this batch has no grids (--no-grid), but variants, which GridDataset reads in its folder, and "
+                         "'export --to webdataset --content files' takes" % records.folder)
     if not out:
         raise EmptyError("%s: no mesh of this batch has a grid that can be read (%s)" % (records.folder, " ".join(GRIDS)))
     return out
@@ -57,8 +86,11 @@ def describe(item: Item) -> Dict[str, Any]:
     """What is told beside a grid: the same for the same mesh and options, whenever they were run."""
     made = item.end.get("voxelize", {})
     grid = made.get("grid", {})
+    shape = grid.get("dims")
+    if shape is None and item.variant_count:  # of each of them
+        shape = [item.end["augment"]["resolution"]] * 3
     return {"item": item.item, "class": item.kind, "split": item.split, "status": item.status,
-            "shape": grid.get("dims"), "origin": grid.get("origin"), "voxel_size": grid.get("voxel_size"),
+            "shape": shape, "origin": grid.get("origin"), "voxel_size": grid.get("voxel_size"),
             "voxels": made.get("voxels"), "hash": made.get("hash"), "mesh_sha256": item.end.get("sha256")}
 
 
@@ -67,7 +99,7 @@ def packed_grid(records: Records, item: Item, verify: bool = True) -> Tuple[Arra
     output = item.grid()
     assert output is not None
     if verify:
-        content(records, output)
+        (folder_content if is_folder(output) else content)(records, output)
     told = describe(item)
     matrix = read(records.path(output)).matrix
     if told["shape"] is None or list(matrix.shape) != list(told["shape"]):  # .binvox pads to a cube

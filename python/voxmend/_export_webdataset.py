@@ -16,7 +16,7 @@ import numpy
 from . import _values
 from ._batch_records import DONE, Item, Records
 from ._errors import ArgumentError, EmptyError
-from ._export_common import content, describe, json_line, packed_grid, published, with_grids
+from ._export_common import content, describe, folder_content, is_folder, json_line, packed_grid, published, with_grids
 
 MAX_BYTES = 256 << 20
 Member = Tuple[str, bytes]
@@ -43,11 +43,20 @@ def _bits(records: Records, item: Item) -> Tuple[List[Member], Dict[str, Any]]:
     return [("bits.npy", file.getvalue())], told
 
 
+def _files_of(records: Records, output: Dict[str, Any], start: int) -> List[Member]:
+    name = output["path"][start:].lstrip(".")
+    if not is_folder(output):
+        return [(name, content(records, output))]
+    if name == "zarr":
+        raise ArgumentError("%s: a grid of --format zarr is a folder, and content \"files\" takes grids that are files; export "
+                            "with content \"bits\", or make the batch with another format" % records.path(output))
+    return [("%s.%s" % (name, inner), data) for inner, data in folder_content(records, output)]
+
+
 def _files(records: Records, item: Item) -> Tuple[List[Member], Dict[str, Any]]:
-    """All outputs; their names without that of the item: npy, npy.json, repaired.ply, variants.0000.npy."""
+    """All outputs; their names without that of the item: npy, npy.json, repaired.ply, variants.000000.npy."""
     start = len(item.plan["output"])
-    return [(output["path"][start:].lstrip(".").replace("/", "."), content(records, output))
-            for output in item.end.get("outputs", ())], describe(item)
+    return [member for output in item.end.get("outputs", ()) for member in _files_of(records, output, start)], describe(item)
 
 
 class _Tars:

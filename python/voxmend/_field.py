@@ -20,7 +20,7 @@ from ._types import Array, ArrayLike, Path, Size
 
 FieldReport = Union[DistanceReport, CoverageReport, LabelReport, VoxelizeReport, None]
 
-_KINDS = ("numbers", "distance", "coverage", "labels", "confidence", "colors")
+VALUE_KINDS = ("numbers", "distance", "coverage", "labels", "confidence", "colors")
 
 
 def _scalars() -> Dict[int, "numpy.dtype[Any]"]:
@@ -53,8 +53,8 @@ class VoxelField(Placed, Shown):
             array = array.view(numpy.uint8)
         kinds = {dtype: number for number, dtype in _scalars().items()}
         native = array.dtype.newbyteorder("=")
-        if _values.word("field: kind", kind) not in _KINDS:
-            raise ArgumentError("field: %r is none of %s" % (kind, ", ".join(_KINDS)))
+        if _values.word("field: kind", kind) not in VALUE_KINDS:
+            raise ArgumentError("field: %r is none of %s" % (kind, ", ".join(VALUE_KINDS)))
         if native not in kinds:
             raise ArgumentError("field: values of type %s are neither integers nor floats of 16 to 64 bits" % array.dtype)
         expected = 4 if kind == "colors" else 3
@@ -232,7 +232,7 @@ def _create(values: Array, place: Any, kind: str) -> Any:
     native = values.dtype.newbyteorder("=")
     kinds = {dtype: number for number, dtype in _scalars().items()}
     plain = numpy.ascontiguousarray(values, native)
-    return _core.create("vxm_field", lib.vxm_field_create, _core.context(), place, _KINDS.index(kind), kinds[native],
+    return _core.create("vxm_field", lib.vxm_field_create, _core.context(), place, VALUE_KINDS.index(kind), kinds[native],
                         _core.pointer("void *", plain), destroy=lib.vxm_field_destroy)
 
 

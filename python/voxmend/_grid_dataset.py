@@ -18,7 +18,11 @@ from ._types import Array
 
 
 class GridDataset(Dataset):
-    """The grids that `voxmend batch` has made: its folder, or an export to webdataset or Zarr (`voxmend batch export`).
+    """The grids that `voxmend batch` has made: its folder, or an export to webdataset or Zarr (`voxmend batch export`). Of a
+    batch without grids (--no-grid --augment) the variants, each an item: its folder, or, of .npy, webdataset with `content`
+    "files".
+
+    Numbers, such as distances and labels, are no voxels: they raise NumbersError, as in `voxmend.read`.
 
     Args:
         root: the folder.
@@ -27,7 +31,7 @@ class GridDataset(Dataset):
 
     Attributes:
         classes: sorted names, of all splits, so that labels are the same in each.
-        names: of the meshes, as in the plan.
+        names: of the meshes, as in the plan; of variants as often as there are some.
         labels: (n,) int64, numbers of the classes.
         shape: (nx, ny, nz)
         groups: (n,) numbers of the tars, or of the chunks, in which the grids are: what is best read together.

@@ -10,13 +10,16 @@ import collections
 import io
 import json
 import os
-from typing import Any, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Collection, Dict, Iterator, List, Optional, Tuple
 
 import numpy
 
 from ._batch_records import Records
-from ._errors import ArgumentError, EmptyError, FormatError, UnavailableError
-from ._export_common import packed_grid, with_grids
+from ._core import lib
+from ._errors import ArgumentError, EmptyError, FormatError, NumbersError, UnavailableError
+from ._export_common import describe, packed_grid, with_grids
+from ._field import VALUE_KINDS, VoxelField
+from ._grid import read
 from ._packed import pack
 from ._types import Array
 
@@ -66,22 +69,32 @@ class Source:
         return bits
 
 
+def _places(records: Records) -> List[Tuple[int, int]]:
+    """Number in the plan and number of the variant, of all grids; -1 = the grid itself. Variants count where no mesh has one."""
+    grids = [(number, -1) for number, item in enumerate(records) if item.grid() is not None]
+    if not grids:
+        grids = [(number, v) for number, item in enumerate(records) for v in range(item.variant_count)]
+    return grids or [(number, -1) for number in with_grids(records)]  # which says why there are none
+
+
 class FolderSource(Source):
     """The outputs of a batch as they are."""
 
     def __init__(self, path: str):
         self.records = Records(path)
         self.records.need_complete()
-        self.numbers = numpy.array(with_grids(self.records), numpy.int64)
+        self.places = numpy.array(_places(self.records), numpy.int64)
         told = _Told()
-        for number in self.numbers:
-            item = self.records[number]
-            told.add({"item": item.item, "class": item.kind, "split": item.split,
-                      "shape": item.end.get("voxelize", {}).get("grid", {}).get("dims")}, path)
+        for number, _ in self.places:
+            told.add(describe(self.records[number]), path)
         super().__init__(told, numpy.arange(len(told.names)), path)
 
     def packed(self, number: int) -> Array:
-        return self.check(number, packed_grid(self.records, self.records[int(self.numbers[number])], False)[0])
+        place, variant = self.places[number].tolist()
+        item = self.records[place]
+        if variant >= 0:
+            return self.check(number, pack(read(self.records.path(item.variant(variant))).matrix))
+        return self.check(number, packed_grid(self.records, item, False)[0])
 
 
 def _lines(path: str) -> Iterator[Dict[str, Any]]:
@@ -93,23 +106,62 @@ def _lines(path: str) -> Iterator[Dict[str, Any]]:
                 raise FormatError("%s: a line is no JSON" % path) from None
 
 
+def _array_in(data: bytes, where: str, name: str) -> Array:
+    try:
+        array: Array = numpy.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
+    except ValueError:
+        raise FormatError("%s: no .npy where the index has that of %s" % (where, name)) from None
+    return array
+
+
+def _kind_in(data: bytes, where: str, name: str) -> Optional[str]:
+    """What the .json of an array says that its values are; None if it says nothing."""
+    try:
+        kind = json.loads(data).get("values") if data else None
+    except (ValueError, AttributeError):
+        raise FormatError("%s: no .json where the index has that of %s" % (where, name)) from None
+    return kind if kind in VALUE_KINDS else None
+
+
+def _need_mask(array: Array, kind: Optional[str], where: str, name: str) -> Array:
+    """The array, if `read` would take it for set and clear voxels: the library decides, as there."""
+    if array.dtype == numpy.bool_ and kind is None:
+        return array
+    is_mask = array.ndim == 3 and kind != "colors"
+    if not is_mask or not lib.vxm_field_is_mask(VoxelField(array, kind=kind or "numbers")._pointer):
+        raise NumbersError("%s: of %s it holds numbers (%s), not set and clear voxels; voxmend.read_field reads them in the "
+                           "folder of the batch" % (where, name, kind or array.dtype))
+    return array
+
+
+def _arrays_of(line: Dict[str, Any], members: Collection[str], where: str) -> List[str]:
+    """The grid among the files of a mesh, or its variants, where no grid was made."""
+    has_grid = line["origin"] is not None
+    wanted = [name for name in ("bits.npy", "npy") if name in members][:1] if has_grid else \
+        sorted(name for name in members if name.startswith("variants.") and name.endswith(".npy"))
+    if not wanted:
+        raise ArgumentError("%s: of %s there is no %s" % (where, line["item"], "grid as bits.npy or npy; export the batch with "
+                            "--content bits" if has_grid else "grid, and no variant as .npy; make the batch with grids, or with "
+                            "--augment \"... --format npy\""))
+    return wanted
+
+
 class TarSource(Source):
     """Tars with their index.jsonl, read where each grid stands."""
 
     def __init__(self, path: str):
-        told, tars = _Told(), []  # type: Tuple[_Told, List[Tuple[int, int, int, bool]]]
+        told, tars = _Told(), []  # type: Tuple[_Told, List[Tuple[int, ...]]]
         self.tars: List[str] = []
         numbers: Dict[str, int] = {}
         for line in _lines(os.path.join(path, "index.jsonl")):
-            member = next((m for m in line["members"] if m["name"] in ("bits.npy", "npy")), None)
-            if member is None:
-                raise ArgumentError("%s: %s is there neither as bits.npy nor as npy; export the batch with --content bits" %
-                                    (path, line["item"]))
-            told.add(line, path)
+            members = {member["name"]: member for member in line["members"]}
             tar = numbers.setdefault(line["tar"], len(numbers))
-            tars.append((tar, member["offset"], member["bytes"], member["name"] == "npy"))
+            for name in _arrays_of(line, members, path):
+                told.add(line, path)
+                member, beside = members[name], members.get(name + ".json", {"offset": 0, "bytes": 0})
+                tars.append((tar, member["offset"], member["bytes"], name != "bits.npy", beside["offset"], beside["bytes"]))
         self.tars = [os.path.join(path, name) for name in numbers]
-        self.places = numpy.array(tars, numpy.int64).reshape(-1, 4)
+        self.places = numpy.array(tars, numpy.int64).reshape(-1, 6)
         self._open: "collections.OrderedDict[int, Any]" = collections.OrderedDict()
         super().__init__(told, self.places[:, 0].copy(), path)
 
@@ -130,13 +182,13 @@ class TarSource(Source):
         return int(self._open[tar].fileno())
 
     def packed(self, number: int) -> Array:
-        tar, offset, size, is_plain = self.places[number].tolist()
-        data = os.pread(self._descriptor(tar), size, offset)
-        try:
-            array = numpy.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
-        except ValueError:
-            raise FormatError("%s: no .npy where the index has that of %s" % (self.tars[tar], self.names[number])) from None
-        return self.check(number, pack(array) if is_plain else array)
+        tar, offset, size, is_plain, beside, beside_size = self.places[number].tolist()
+        where, name = self.tars[tar], self.names[number]
+        array = _array_in(os.pread(self._descriptor(tar), size, offset), where, name)
+        if is_plain:
+            kind = _kind_in(os.pread(self._descriptor(tar), beside_size, beside), where, name)
+            array = pack(_need_mask(array, kind, where, name))
+        return self.check(number, array)
 
 
 class ZarrSource(Source):

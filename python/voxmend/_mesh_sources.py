@@ -99,6 +99,18 @@ def _read_options(format: Optional[str], deflection: float, external: str, color
     return options, name
 
 
+def _need_name(path: Any) -> None:
+    """Refuses what stands in a file where its name is wanted, which would be shown as one that is not there."""
+    if not isinstance(path, (str, bytes)):
+        return
+    text = path if isinstance(path, str) else path.decode("latin-1")
+    longest, least_binary = 4096, 84  # no path is longer; no .stl is shorter
+    if len(text) > longest or text.count("\n") > 1 or (len(text) >= least_binary and "\0" in text):
+        kind, stream = ("characters", "StringIO") if isinstance(path, str) else ("bytes", "BytesIO")
+        raise ArgumentError("load: %d %s that are no path but what stands in a file; give its path, or io.%s(...) of them" %
+                            (len(path), kind, stream))
+
+
 def load(path: Union[Path, IsFile], format: Optional[str] = None, deflection: float = 0.0, external: str = "folder",
          colors: bool = False) -> Mesh:
     """Reads a mesh file; what a damaged file still holds is read, and its damage told as VoxmendWarning.
@@ -114,6 +126,7 @@ def load(path: Union[Path, IsFile], format: Optional[str] = None, deflection: fl
         colors: keep colours, materials and textures too, for `voxmend.colors(mesh, by="mesh")` and `Mesh.look`.
     """
     options, name = _read_options(format, deflection, external, colors)
+    _need_name(path)
     if not isinstance(path, (str, bytes, os.PathLike)) and hasattr(path, "read"):
         made, shown = _read_file(path, options)
     else:

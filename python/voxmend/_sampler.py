@@ -31,7 +31,7 @@ class Sampler:
         scale: each axis is scaled by a factor of its own, uniform in 1 - scale to 1 + scale.
         displace: how far vertices are displaced, as a fraction of the width of the grid.
         displacement: "uniform": by up to that along each axis; "normal": with that deviation.
-        noise: displacements in the buffer that all variants read.
+        noise: displacements in the buffer that all variants read; None = 65536. It goes with `displace`.
         mirror: axes such as "x" or "xyz", along each of which half of the variants are mirrored.
         translate: part of the room on each side, 0 to 1, by which variants are moved.
         fill: the longest side fills the grid rather than the diagonal; without rotation.
@@ -47,7 +47,7 @@ class Sampler:
     """
 
     def __init__(self, resolution: int = 64, *, pad: int = 0, seed: int = 0, rotate: Any = None, scale: float = 0.0,
-                 displace: float = 0.0, displacement: str = "uniform", noise: int = 65536, mirror: str = "",
+                 displace: float = 0.0, displacement: str = "uniform", noise: Optional[int] = None, mirror: str = "",
                  translate: float = 0.0, fill: bool = False, mode: str = "solid", surface: Optional[str] = None,
                  method: Optional[str] = None, vote: Optional[str] = None, parts: str = "auto", cavities: Optional[str] = None,
                  thin: str = "auto", engine: Optional[str] = None, coverage: Optional[int] = None):
@@ -71,10 +71,14 @@ class Sampler:
         voxelize = Rules(**{name: given[name] for name in rules}).options("sampler")
         options = _core.new("vxm_sampler_options", voxelize=voxelize)
         for name, least, most in (("resolution", 1, _values.DIM_MAX), ("pad", 0, _values.INT64_MAX),
-                                  ("seed", 0, 0xFFFFFFFFFFFFFFFF), ("noise", 0, _UINT32_MAX)):
+                                  ("seed", 0, 0xFFFFFFFFFFFFFFFF)):
             setattr(options, name, _values.whole("sampler: " + name, given[name], least, most))
         for name in ("scale", "displace", "translate"):
             setattr(options, name, _values.real("sampler: " + name, given[name], 0))
+        if given["noise"] is not None:
+            options.noise = _values.whole("sampler: noise", given["noise"], 1, _UINT32_MAX)
+            if options.displace == 0:
+                raise ArgumentError("sampler: noise goes with displace; give displace too, or leave noise out")
         if given["coverage"] is not None:
             options.coverage = _values.whole("sampler: coverage", given["coverage"], 1, 8)
             if voxelize.thin != lib.VXM_THIN_AUTO:

@@ -174,8 +174,11 @@ class Place:
             return
         if given or self.bounds is not None or self.fit is not None or self.pad:
             raise ArgumentError("%s: `like` takes the whole space of a grid; leave out the others" % self.caller)
-        if not all(hasattr(self.like, name) for name in ("shape", "origin", "pitch")):
-            raise KindError("%s: `like` is %s, which has no shape, origin and pitch" % (self.caller, type(self.like).__name__))
+        missing = [name for name in ("shape", "origin", "pitch") if not hasattr(self.like, name)]
+        if missing:
+            raise KindError("%s: `like` is %s, which has no %s; give a grid, a field or an octree, such as "
+                            "voxmend.VoxelGrid(array, pitch, origin)" %
+                            (self.caller, type(self.like).__name__, " and no ".join(missing)))
 
     def options(self, original: Mesh) -> Tuple[Any, Any]:
         """The options, and what they point to."""

@@ -89,7 +89,7 @@ def path(value: Any) -> bytes:
     except UnicodeError:
         raise ArgumentError("the path %s cannot be a name in this system's encoding" % ascii(value)) from None
     if b"\0" in out:
-        raise ArgumentError("the path %s has a NUL in it" % ascii(value))
+        raise ArgumentError("the path %s has a NUL in it" % _shown(value))
     return out
 
 

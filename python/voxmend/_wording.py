@@ -5,6 +5,10 @@ from __future__ import annotations
 import re
 
 _PHRASES = (
+    ("make them so with 'voxmend convert --threshold' or '--below' (in C vxm_field_read, vxm_field_threshold)",
+     "at_least= or below= of voxmend.read makes them so, and voxmend.read_field reads the numbers"),
+    ("give it with vxm_sampler_put first", "give it with Sampler.put first"),
+    ("vxm_sampler_batch alone gives", "Sampler.batch alone gives"),
     ("resolution (-r)", "resolution"),
     ("'voxmend repair --level closed'", "voxmend.repair(level=\"closed\")"),
     ("'voxmend remesh'", "voxmend.remesh"),

@@ -122,7 +122,7 @@ def export(folder: Any, path: Any, *, to: str, **options: Any) -> Dict[str, Any]
         path: what is written, which must not be there: a file for "parquet", else a folder.
         to: "parquet", "webdataset" or "zarr".
         options: of webdataset: `max_bytes` of a tar (268435456), `content` "bits" (grids, eight voxels a byte) or "files"
-            (all that was made, as it is), `shuffle` (a seed that decides about the order; None = that of the plan); of
+            (all that was made, as it is; variants are files of their mesh), `shuffle` (a seed that decides about the order; None = that of the plan); of
             zarr: `zarr_format` (2 or 3; None = what the zarr package prefers), `chunk_bytes` (4194304), `split`.
 
     Returns:

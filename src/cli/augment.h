@@ -14,6 +14,7 @@ typedef struct augment_request {
   vxm_variant variant;   /**< model and epoch */
   bool no_repair, repair_options, noise;
   bool surface, thin;
+  bool force; /**< variants that are there may be replaced */
   cli_engine engine;
   vxm_voxel_format voxels; /**< of a stream */
   vxm_repair_options repair;
@@ -24,6 +25,7 @@ typedef struct augment_request {
 } augment_request;
 
 extern const cli_option augment_options[];
+extern const char *const augment_file_formats[]; /**< ends with NULL */
 
 /** Reads the command line; CLI_STOP if it is at fault, or all has been said. */
 int augment_read_arguments(cli_run *cli, augment_request *out);
@@ -41,8 +43,12 @@ typedef struct augment_folder {
   uint64_t sizes[64];       /**< of the last that were made */
 } augment_folder;
 
-/** CLI_STOP if a file in the folder would be one that is read, or the report. */
+/** CLI_STOP if a file that will be replaced in the folder is one that is read, or the report. */
 int augment_check_folder(cli_run *cli, const augment_request *given);
+/** CLI_STOP if a variant that will be made is there, of whatever format and options, and --force is not
+ * given.
+ */
+int augment_check_former(cli_run *cli, const augment_request *given);
 /** Writes the files; CLI_DONE or CLI_FAILED. */
 int augment_write_folder(cli_run *cli, augment_folder *f, const augment_request *given, vxm_sampler *sampler);
 /** As vxm_sampler_files, for numbers; a failure is in cli->error. */

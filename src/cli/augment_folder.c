@@ -20,8 +20,8 @@ enum {
 
 /* ---- Names ---- */
 
-static bool has_json(const augment_request *given) {
-  return strcmp(given->format, "raw") == 0 || strcmp(given->format, "npy") == 0;
+static bool has_json(const char *format) {
+  return strcmp(format, "raw") == 0 || strcmp(format, "npy") == 0;
 }
 
 static void name_file(char *out, const augment_request *given, int64_t made, const char *behind) {
@@ -29,17 +29,34 @@ static void name_file(char *out, const augment_request *given, int64_t made, con
            behind);
 }
 
-/** Whether a file of this name, without its folder, is one that will be written. */
-static bool will_be_written(const augment_request *given, const char *name) {
-  char *end, made[64];
+/** The number of the variant of which a file is, by its name without its folder; -1 = of none. */
+static int64_t number_of(const char *name, const char *format) {
+  char made[64];
   if (!isdigit((unsigned char)*name))
-    return false;
-  long long number = strtoll(name, &end, 10);
-  if (number < given->first || number - given->first >= given->count)
-    return false;
-  int length = snprintf(made, sizeof made, "%06lld.%s", number, given->format);
-  return strncmp(name, made, (size_t)length) == 0 &&
-         (name[length] == '\0' || (has_json(given) && strcmp(name + length, ".json") == 0));
+    return -1;
+  long long number = strtoll(name, NULL, 10);
+  int length = snprintf(made, sizeof made, "%06lld.%s", number, format);
+  bool is_one = strncmp(name, made, (size_t)length) == 0 &&
+                (name[length] == '\0' || (has_json(format) && strcmp(name + length, ".json") == 0));
+  return is_one ? number : -1;
+}
+
+static bool is_wanted(const augment_request *given, int64_t number) {
+  return number >= given->first && number - given->first < given->count;
+}
+
+/** The number of a variant of any format; -1 = of none. */
+static int64_t number_of_any(const char *name) {
+  int64_t number = -1;
+  for (int f = 0; number < 0 && augment_file_formats[f]; f++)
+    number = number_of(name, augment_file_formats[f]);
+  return number;
+}
+
+/** Whether a file of this name, without its folder, is one that will be written, or removed. */
+static bool will_be_replaced(const augment_request *given, const char *name) {
+  return given->force ? number_of_any(name) >= given->first
+                      : is_wanted(given, number_of(name, given->format));
 }
 
 /** CLI_STOP if a file of the folder that will be replaced is `path`, whatever its name there. */
@@ -49,11 +66,11 @@ static int check_name(cli_run *cli, const augment_request *given, const char *pa
   struct stat own, other;
   snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
   bool is_met = stat(folder, &own) == 0 && stat(given->output, &other) == 0 && own.st_dev == other.st_dev &&
-                own.st_ino == other.st_ino && will_be_written(given, slash ? slash + 1 : path);
+                own.st_ino == other.st_ino && will_be_replaced(given, slash ? slash + 1 : path);
   DIR *list = !is_met && stat(path, &own) == 0 && S_ISREG(own.st_mode) ? opendir(given->output) : NULL;
   for (struct dirent *entry; list && !is_met && (entry = readdir(list));) {
     snprintf(inside, sizeof inside, "%s/%s", given->output, entry->d_name);
-    is_met = will_be_written(given, entry->d_name) && stat(inside, &other) == 0 &&
+    is_met = will_be_replaced(given, entry->d_name) && stat(inside, &other) == 0 &&
              own.st_dev == other.st_dev && own.st_ino == other.st_ino;
   }
   if (list)
@@ -69,6 +86,36 @@ int augment_check_folder(cli_run *cli, const augment_request *given) {
       (given->rotations && check_name(cli, given, given->rotations, "read") == CLI_STOP))
     return CLI_STOP;
   return cli->report ? check_name(cli, given, cli->report, "written by --report") : CLI_END;
+}
+
+/* ---- A former run ---- */
+
+int augment_check_former(cli_run *cli, const augment_request *given) {
+  char found[NAME_MAX + 1] = "";
+  DIR *list = given->force ? NULL : opendir(given->output);
+  for (struct dirent *entry; list && (entry = readdir(list));)
+    if (is_wanted(given, number_of_any(entry->d_name)) && (!found[0] || strcmp(entry->d_name, found) < 0))
+      snprintf(found, sizeof found, "%s", entry->d_name);
+  if (list)
+    closedir(list);
+  return found[0] ? cli_usage(cli,
+                              "%s has variants of a former run (%s); give another -o, or --force to replace "
+                              "them",
+                              given->output, found)
+                  : CLI_END;
+}
+
+/** What a longer run, or one in another format, has left would pass for variants of this one. */
+static void remove_former(const augment_request *given) {
+  char path[PATH_SIZE + NAME_MAX];
+  DIR *list = opendir(given->output);
+  for (struct dirent *entry; list && (entry = readdir(list));)
+    if (number_of_any(entry->d_name) >= given->first) {
+      snprintf(path, sizeof path, "%s/%s", given->output, entry->d_name);
+      unlink(path);
+    }
+  if (list)
+    closedir(list);
 }
 
 /* ---- Work ---- */
@@ -166,8 +213,11 @@ int augment_write_folder(cli_run *cli, augment_folder *f, const augment_request 
   int status = CLI_DONE;
   if (!f->is_new && errno != EEXIST)
     status = cli_fail_text(cli, "%s: cannot make the folder: %s", given->output, strerror(errno));
-  else
+  else {
+    if (given->force && !f->is_new)
+      remove_former(given);
     status = write_chunks(cli, f, given, sampler, names);
+  }
   free(names);
   return status;
 }
@@ -180,7 +230,7 @@ void augment_remove_files(const augment_folder *f, const augment_request *given)
     name_file(path, given, i, "");
     unlink(path);
     name_file(path, given, i, ".json");
-    if (has_json(given))
+    if (has_json(given->format))
       unlink(path);
   }
   if (f->is_new)

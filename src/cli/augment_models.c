@@ -29,6 +29,20 @@ static int fail(cli_run *cli, const batch_error *error) {
   return cli_fail_text(cli, "%s", error->text);
 }
 
+/** Whether there is nothing of a former run in the folder of a mesh; else after a line. */
+static bool check_former(cli_run *cli, const augment_request *given, const batch_item *item) {
+  augment_request own = *given;
+  char *folder = NULL;
+  if (augment_is_stream(given))
+    return true;
+  if (asprintf(&folder, "%s/%s", given->output, item->output) < 0)
+    return cli_fail_text(cli, "out of memory") == CLI_DONE;
+  own.output = folder;
+  bool good = augment_check_former(cli, &own) != CLI_STOP;
+  free(folder);
+  return good;
+}
+
 /** Says before any work what is not taken. */
 static int check(cli_run *cli, const augment_request *given, const batch_manifest *manifest) {
   for (int64_t i = 0; i < manifest->count; i++) {
@@ -38,6 +52,8 @@ static int check(cli_run *cli, const augment_request *given, const batch_manifes
                            item->path);
     if (item->options)
       return cli_fail_text(cli, "%s: its row has options, which 'voxmend batch --augment' takes", item->id);
+    if (!check_former(cli, given, item))
+      return cli->status;
   }
   if ((uint64_t)given->variant.model + (uint64_t)manifest->count - 1 > UINT32_MAX)
     return cli_fail_text(cli, "--model and %" PRId64 " meshes go beyond model 4294967295", manifest->count);

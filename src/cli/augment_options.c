@@ -25,7 +25,8 @@ enum {
   KEY_NO_REPAIR,
   KEY_WELD,
   KEY_KEEP,
-  KEY_COVERAGE
+  KEY_COVERAGE,
+  KEY_FORCE
 };
 
 const cli_option augment_options[] = {
@@ -37,6 +38,7 @@ const cli_option augment_options[] = {
      "float32 [bits]"},
     {'n', "count", "N", "how many variants [16]; 0 with -o -: no end, until the reader has enough"},
     {KEY_FIRST, "first", "I", "the number of the first one [0]"},
+    {KEY_FORCE, "force", NULL, "replace variants of a former run: those in DIR with this number or above go"},
     {KEY_SEED, "seed", "S", "of the random numbers, up to 2^63 - 1 [0]"},
     {KEY_EPOCH, "epoch", "E", "another epoch gives other variants [0]"},
     {KEY_MODEL, "model", "M",
@@ -155,6 +157,9 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
     return read_number_of(cli, &out->count, "count", value, 0, most);
   case KEY_FIRST:
     return read_number_of(cli, &out->first, "first", value, 0, most);
+  case KEY_FORCE:
+    out->force = true;
+    return CLI_END;
   case KEY_SEED:
     result = read_number_of(cli, &number, "seed", value, 0, INT64_MAX);
     out->sampler.seed = (uint64_t)number;
@@ -223,14 +228,15 @@ bool augment_is_stream(const augment_request *given) {
   return strcmp(given->output, "-") == 0;
 }
 
+const char *const augment_file_formats[] = {"rle", "raw", "binvox", "npy", "nrrd", NULL};
+
 /** The format, by default the first one known. */
 static int check_format(cli_run *cli, augment_request *given) {
-  static const char *const files[] = {"rle", "raw", "binvox", "npy", "nrrd", NULL};
   static const char *const streams[] = {"bits", "uint8", "float32", NULL};
   enum { NUMBERS = 3 /**< the first of the files that hold numbers; of streams it is the second */ };
   char list[CLI_LIST_MAX];
   bool stream = augment_is_stream(given), shares = given->sampler.coverage > 0;
-  const char *const *known = stream ? streams + shares : files + (shares ? NUMBERS : 0);
+  const char *const *known = stream ? streams + shares : augment_file_formats + (shares ? NUMBERS : 0);
   int choice = given->format ? cli_read_choice(given->format, known) : 0;
   if (choice < 0)
     return cli_usage(cli, "--format '%s' is none of %s, which %s%s", given->format, cli_list(list, known),
@@ -260,6 +266,8 @@ static int check_conflicts(cli_run *cli, const augment_request *given) {
     return cli_usage(cli, "--coverage counts what is inside, and --thin adds voxels; give one of them");
   if (sampler->resolution * (sampler->coverage > 0 ? sampler->coverage : 1) > 4096)
     return cli_usage(cli, "-r and --coverage make more than 4096 sub-voxels along an axis");
+  if (given->force && augment_is_stream(given))
+    return cli_usage(cli, "--force replaces files, and -o - writes none");
   if (given->noise && sampler->displace == 0)
     return cli_usage(cli, "--noise goes with --displace");
   if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)
@@ -287,5 +295,7 @@ int augment_read_arguments(cli_run *cli, augment_request *out) {
   if (cli_check_names(cli) == CLI_STOP || cli_engine_check(cli, &out->engine) == CLI_STOP ||
       check_format(cli, out) == CLI_STOP || check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  return augment_is_stream(out) || out->is_several ? CLI_END : augment_check_folder(cli, out);
+  if (augment_is_stream(out) || out->is_several)
+    return CLI_END;
+  return augment_check_folder(cli, out) == CLI_STOP ? CLI_STOP : augment_check_former(cli, out);
 }

@@ -11,12 +11,29 @@
 
 /* ---- Results ---- */
 
-/** Messages call what comes from standard input by this name; here it is a member of an archive. */
-static char *with_name(const char *text, const char *name) {
-  const char *found = strstr(text, "<stdin>");
+/** A text with other words in one place, to be freed. */
+static char *reworded(const char *text, const char *words, const char *others) {
+  const char *found = strstr(text, words);
   char *out = NULL;
-  if (!found || asprintf(&out, "%.*s%s%s", (int)(found - text), text, name, found + strlen("<stdin>")) < 0)
+  if (!found || asprintf(&out, "%.*s%s%s", (int)(found - text), text, others, found + strlen(words)) < 0)
     return strdup(text);
+  return out;
+}
+
+/** Messages about standard input, as they are of a member of an archive: it has another name, and though
+ * there are files beside it, it is read alone, and no option changes that. */
+static char *of_item(const char *text, const json_t *job) {
+  static const char *const misleading[] = {
+      "was not opened: a mesh that is not a file has no folder (--external any opens it)",
+      "was not opened: there is no such file"};
+  char *out = reworded(text, "<stdin>", batch_json_text(job, "item"));
+  for (int m = 0; m < 2 && out && batch_json_text(job, "member"); m++) {
+    char *line = reworded(out, misleading[m],
+                          "was not opened: a mesh in an archive is read without the files beside it; unpack "
+                          "the archive, and give its folder");
+    free(out);
+    out = line;
+  }
   return out;
 }
 
@@ -68,14 +85,14 @@ static batch_status status_of(const cli_capture *capture, const char *input) {
 }
 
 static void tell_failure(json_t *result, const cli_capture *capture, const char *command, const char *input,
-                         const char *name) {
+                         const json_t *job) {
   bool is_known = capture->error.code != VXM_OK;
   batch_status status = status_of(capture, input);
   json_object_set_new(result, "status", json_string(batch_status_names[status]));
   json_object_set_new(result, "stage", json_string(status == BATCH_UNREADABLE ? "read" : command));
   if (!is_known)
     return; /* its line is on standard error */
-  char *text = with_name(capture->error.text, name);
+  char *text = of_item(capture->error.text, job);
   json_object_set_new(result, "message", cli_json_text(text ? text : capture->error.text));
   json_object_set_new(result, "code", json_string(vxm_status_name(capture->error.code)));
   if (capture->error.system == ENOSPC || capture->error.system == EDQUOT)
@@ -95,13 +112,13 @@ static char **words_of(const json_t *command, int *count) {
   return words;
 }
 
-static void add_warnings(json_t *result, const json_t *report, const char *name) {
+static void add_warnings(json_t *result, const json_t *report, const json_t *job) {
   enum { MOST = 20 };
   json_t *all = json_object_get(result, "warnings"), *warnings = json_object_get(report, "warnings"),
          *warning;
   size_t w;
   json_array_foreach(warnings, w, warning) {
-    char *text = json_array_size(all) < MOST ? with_name(json_string_value(warning), name) : NULL;
+    char *text = json_array_size(all) < MOST ? of_item(json_string_value(warning), job) : NULL;
     if (text)
       json_array_append_new(all, cli_json_text(text));
     free(text);
@@ -110,7 +127,7 @@ static void add_warnings(json_t *result, const json_t *report, const char *name)
 
 /** Runs a command; false after a failure, which is told in the result. */
 static bool do_command(json_t *result, json_t *reports, const json_t *job, const json_t *command) {
-  const char *member = batch_json_text(job, "member"), *name = batch_json_text(job, "item");
+  const char *member = batch_json_text(job, "member");
   cli_capture capture = {.format = member ? batch_extension(member) : NULL, .error = VXM_ERROR_INIT};
   int count;
   char **words = words_of(command, &count);
@@ -121,9 +138,9 @@ static bool do_command(json_t *result, json_t *reports, const json_t *job, const
   if (status == CLI_DONE && capture.report) {
     json_object_set_new(result, words[0], short_report(capture.report));
     json_object_set_new(reports, words[0], lasting(capture.report));
-    add_warnings(result, capture.report, name);
+    add_warnings(result, capture.report, job);
   } else
-    tell_failure(result, &capture, words[0], member ? "<stdin>" : batch_json_text(job, "input"), name);
+    tell_failure(result, &capture, words[0], member ? "<stdin>" : batch_json_text(job, "input"), job);
   json_decref(capture.report);
   free(words);
   return status == CLI_DONE;
@@ -166,7 +183,7 @@ static bool write_report(json_t *result, const json_t *job, json_t *reports, con
               vxm_file_write(NULL, path, text, strlen(text), &error) == VXM_OK;
   if (!good) {
     cli_capture capture = {.error = error};
-    tell_failure(result, &capture, "report", "", name);
+    tell_failure(result, &capture, "report", "", job);
   }
   free(path);
   free(text);

@@ -85,7 +85,9 @@ int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *
   }
   batch_folder_remove(folder);
   free(folder);
-  if (outcome == BATCH_INTERRUPTED)
+  if (outcome == BATCH_INTERRUPTED) {
+    cli_set_signal(abs(batch_signal()));
     return cli_fail_text(cli, "interrupted");
+  }
   return report ? cli_finish(cli, report) : cli_fail_text(cli, "%s", error.text);
 }

@@ -112,7 +112,7 @@ static bool add_limits(batch_words *words, const batch_wish *wish, uint64_t memo
               batch_words_add(words, "--threads=%" PRId64, wish->threads);
   if (memory > 0)
     good = good && batch_words_add(words, "--memlimit=%" PRIu64, memory);
-  if (product == BATCH_GRID || product == BATCH_REPAIRED || product == BATCH_REMESHED)
+  if (product != BATCH_PICTURE) /* what is left of a run that was ended */
     good = good && batch_words_add(words, "--force");
   return good;
 }

@@ -275,12 +275,27 @@ static int processors(void) {
   return count < 1 ? 1 : count > 512 ? 512 : count;
 }
 
+/** How meshes are read has been taken for this program (CLI_OPTIONS_READ), and is for those that make grids.
+ */
+static bool hand_on_reading(const cli_run *cli, batch_words *words) {
+  static const char *const external[] = {"folder", "any", "none"}; /* in the order of the enumeration */
+  const vxm_mesh_read_options usual = VXM_MESH_READ_OPTIONS_INIT;
+  bool good = true;
+  if (cli->read.external != usual.external)
+    good = batch_words_add(words, "--external=%s", external[cli->read.external]);
+  if (cli->read.deflection != usual.deflection)
+    good = good && batch_words_add(words, "--deflection=%.17g", cli->read.deflection);
+  return good;
+}
+
 int batch_read_arguments(cli_run *cli, batch_wish *out) {
   const char *value;
   int key;
   while ((key = cli_next_option(cli, &value)) != CLI_END)
     if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
       return CLI_STOP;
+  if (!hand_on_reading(cli, &out->grid_options))
+    return cli_usage(cli, "out of memory: free some");
   if (out->jobs == 0)
     out->jobs = processors();
   if (out->no_grid && out->grid_options.count > 0)

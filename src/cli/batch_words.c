@@ -74,6 +74,30 @@ static bool is_plain(const char *word) {
          !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%")];
 }
 
+static bool has_controls(const char *word) {
+  while ((unsigned char)*word >= ' ')
+    word++;
+  return *word != '\0';
+}
+
+/** A cell of a table has no tabs and ends of lines, so that printf has to make them. */
+static void put_printed(FILE *file, const char *word) {
+  fputs("\"$(printf -- '", file);
+  for (const unsigned char *c = (const unsigned char *)word; *c; c++)
+    if (*c < ' ')
+      fprintf(file, "\\%03o", *c);
+    else
+      fputs(*c == '\'' ? "\\047" : *c == '\\' ? "\\\\" : *c == '%' ? "%%" : (char[2]){(char)*c}, file);
+  fputs("')\"", file);
+}
+
+static void put_quoted(FILE *file, const char *word) {
+  fputc('\'', file);
+  for (const char *c = word; *c; c++)
+    fputs(*c == '\'' ? "'\\''" : (char[2]){*c}, file);
+  fputc('\'', file);
+}
+
 char *batch_words_text(char *const *words, int count) {
   char *text = NULL;
   size_t size = 0;
@@ -81,14 +105,10 @@ char *batch_words_text(char *const *words, int count) {
   for (int w = 0; file && w < count; w++) {
     if (w > 0)
       fputc(' ', file);
-    if (is_plain(words[w])) {
+    if (is_plain(words[w]))
       fputs(words[w], file);
-      continue;
-    }
-    fputc('\'', file);
-    for (const char *c = words[w]; *c; c++)
-      fputs(*c == '\'' ? "'\\''" : (char[2]){*c}, file);
-    fputc('\'', file);
+    else
+      (has_controls(words[w]) ? put_printed : put_quoted)(file, words[w]);
   }
   if (file && fclose(file) != 0) {
     free(text);

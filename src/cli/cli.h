@@ -313,5 +313,7 @@ bool cli_progress(cli_run *cli, const char *phase, double fraction);
 void cli_progress_clear(cli_run *cli);
 /** The signal that asked to stop, or 0. */
 int cli_signal(void);
+/** A failed run ends by this signal, which was caught elsewhere. */
+void cli_set_signal(int number);
 
 #endif

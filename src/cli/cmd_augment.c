@@ -143,7 +143,7 @@ const cli_command cli_command_augment = {
         "same with a process for each mesh and goes on after an interruption.\n\n"
         "Examples:\n"
         "  voxmend augment chair.off -o chairs -n 100 --rotate any --scale 0.5 --displace 0.01\n"
-        "  voxmend augment chair.off -o chairs -n 12 -r 32 --rotate z --mirror x --format npy\n"
+        "  voxmend augment chair.off -o turned -n 12 -r 32 --rotate z --mirror x --format npy\n"
         "  voxmend augment chair.off -o - -n 0 -r 32 --rotate any --format float32 | train\n"
         "  voxmend augment ModelNet10 -o variants -n 12 -r 32 --rotate z --format npy",
     .options = augment_options,

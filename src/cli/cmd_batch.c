@@ -95,6 +95,7 @@ static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *
     json_decref(summary);
     fprintf(stderr, "voxmend: interrupted: %" PRId64 " of %" PRId64 " are left; the same command goes on\n",
             tally->counts[BATCH_PENDING], tally->total);
+    cli_set_signal(abs(batch_signal()));
     return CLI_FAILED;
   }
   int64_t bad = 0;

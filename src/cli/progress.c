@@ -32,6 +32,10 @@ int cli_signal(void) {
   return caught;
 }
 
+void cli_set_signal(int number) {
+  caught = number;
+}
+
 static void draw(cli_run *cli, double fraction) {
   enum { WIDTH = 30, REDRAW_MS = 100 };
   double now = cli_clock();

@@ -49,6 +49,23 @@ for archive in a.tar a.tar.gz a.tar.xz a.zip; do
 done
 [ ! -e above.binvox ] && [ ! -e ../above.binvox ] && [ -e from-a.zip/_/_/above.binvox ] || fail "a member leads out of the folder"
 cmp folder/torus.binvox "from-a.zip/stühle/stuhl.binvox" || fail "a name beyond ASCII"
+# A mesh is read without the files beside it, and told so, whatever the option; but what is not wanted is not missed.
+mkdir red
+printf 'mtllib m.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >red/m.obj
+printf 'newmtl red\nKd 1 0 0\n' >red/m.mtl
+tar cf red.tar red
+for external in folder any; do
+  batch red.tar -o red-$external --format npy --color mesh --external $external >/dev/null
+  grep -q '"m.mtl", .* a mesh in an archive is read without the files beside it; unpack the archive' red-$external/failures.tsv ||
+    fail "companions of a member, --external $external"
+done
+batch red.tar -o red-none --format npy --color mesh --external none >/dev/null
+grep -q '"m.mtl", which it refers to, was not opened: --external none' red-none/failures.tsv || fail "--external none"
+batch red -o red-folder-none --format npy --color mesh --external none >/dev/null
+grep -q '"m.mtl", which it refers to, was not opened: --external none' red-folder-none/failures.tsv || fail "--external none of files"
+batch red -o red-files --format npy --color mesh >/dev/null
+batch red.tar -o red-bits --format npy >/dev/null
+[ -e red-files/m.npy ] && [ -e red-bits/red/m.npy ] || fail "red"
 # Shards take their share of an archive each.
 batch a.tar.gz -o shards --shard 0/3 >/dev/null
 batch a.tar.gz -o shards --shard 2/3 >/dev/null

@@ -32,7 +32,7 @@ run 'for i in 0 1; do record c.bin 32768 $i >x; tail -c 32768 npy/00000$i.npy | 
 run 'for f in rle raw binvox nrrd; do voxmend augment in/l_prism.off -o $f -n 2 $all --format $f -q; voxmend compare $f/000001.$f npy/000001.npy --json; done | grep iou'
 run 'voxmend augment in/l_prism.off -o rle -n 2 --first 999999 $all -q; ls rle'
 run 'voxmend augment in/l_prism.off -o shares -n 2 $all --coverage 4 -q; ls shares; voxmend augment in/l_prism.off -o - -n 2 $all --coverage 4 -q | tail -c +65 | cksum'
-run 'voxmend augment in/l_prism.off -o shares -n 1 $all --coverage 2 --format nrrd -q && voxmend convert shares/000000.nrrd -o x.npy --threshold 128 -q && voxmend compare x.npy npy/000000.npy | tail -n 1'
+run 'voxmend augment in/l_prism.off -o halves -n 1 $all --coverage 2 --format nrrd -q && voxmend convert halves/000000.nrrd -o x.npy --threshold 128 -q && voxmend compare x.npy npy/000000.npy | tail -n 1'
 for option in '--format rle' '--mode surface' '--thin keep' '-r 1025'; do run "voxmend augment in/l_prism.off -o shares -n 1 --coverage 4 $option"; done
 run 'voxmend augment in/l_prism.off -o shares -n 1 --coverage 3'
 run 'voxmend augment in/l_prism.off -o json -n 1 --json | timeless | sed -E "/peak_bytes|file_bytes/s/[0-9]+/N/"'
@@ -45,7 +45,7 @@ cp in/torus.off set/table/test/c.off
 echo 'OFF 1' >set/table/test/d.off
 echo note >set/readme.md
 run 'voxmend augment set -o many -n 2 $all --model 7 | timeless; find many -type f | LC_ALL=C sort; cat many/models.tsv'
-run 'for m in chair/train/a:7 chair/train/b:8 table/test/c:9; do voxmend augment set/${m%:*}.off -o one -n 2 $all --model ${m#*:} -q; for i in 0 1; do cmp one/00000$i.rle many/${m%:*}/00000$i.rle && echo equal; done; done'
+run 'for m in chair/train/a:7 chair/train/b:8 table/test/c:9; do voxmend augment set/${m%:*}.off -o one -n 2 $all --model ${m#*:} -q --force; for i in 0 1; do cmp one/00000$i.rle many/${m%:*}/00000$i.rle && echo equal; done; done'
 run 'voxmend augment set -o new -n 2 -r 8 --coverage 2 -q; find new -type f | LC_ALL=C sort'
 run 'voxmend augment set/chair/train/a.off set/table/test/c.off -o - -n 3 $all --model 1 -q >m.bin; wc -c <a.bin; head -c 64 m.bin | od -A d -t u4 | sed -n 3p; for i in 0 2 3 5; do tail -c +$((65 + i * 4112)) m.bin | head -c 12 | od -A n -t u4; done'
 run 'voxmend augment set/table/test/c.off -o - -n 3 $all --model 2 -q | tail -c +65 >b.bin; tail -c +$((65 + 3 * 4112)) m.bin | cmp - b.bin && echo equal'
@@ -65,6 +65,17 @@ run 'voxmend augment options.csv -o x'
 tar cf set.tar set
 run "voxmend augment set.tar -o x 2>&1 | sed 's/: .*unpack it.*/: unpack it/'" # with libarchive, and without
 run 'mkdir bare; voxmend augment bare -o x'
+
+say "# a former run: refused, or replaced; further variants are none of it"
+run 'voxmend augment in/cube.off -o again -n 3 -r 8 -q; voxmend augment in/cube.off -o again -n 1 --first 3 -r 8 --format npy -q; echo note >again/notes; ls again'
+for options in '-n 2 -r 4' '-n 2 -r 4 --format binvox' '--first 2 -n 9' '--first 3 -n 1 --format raw'; do
+  run "voxmend augment in/cube.off -o again $options"
+done
+run 'cksum again/* >before; voxmend augment in/nothing.off -o again -n 2 --force; cksum again/* | cmp - before'
+run 'voxmend augment in/cube.off -o again -n 1 --first 2 -r 4 --force -q; ls again; for i in 1 2; do voxmend info again/00000$i.rle | grep "a grid"; done'
+run 'voxmend augment in/cube.off -o again -n 2 -r 4 --format npy --force -q; ls again'
+run 'voxmend augment set -o many -n 2 -r 8; voxmend augment set -o many -n 1 --first 2 -r 8 -q; voxmend augment set -o many -n 1 -r 8 --force -q; find many -type f | LC_ALL=C sort'
+run 'cp in/cube.off again/000007.rle; voxmend augment again/000007.rle -o again -n 2 --force; voxmend augment in/cube.off -o - -n 1 --force'
 
 say "# each augmentation"
 printf '0 -1 0 1 0 0 0 0 1\n1,0,0, 0,0,-1, 0,1,0\n' >turns.txt
@@ -100,6 +111,6 @@ run 'voxmend augment missing.off -o x'
 run 'voxmend augment in/l_prism.off -o - -n 3 -r 16 -q >/dev/full'
 run 'voxmend augment in/l_prism.off -o x -n 3 --memlimit 20K'
 mkdir -p x2/000001.rle
-run 'voxmend augment in/l_prism.off -o x2 -n 3; ls x2'
+run 'voxmend augment in/l_prism.off -o x2 -n 3 --force; ls x2'
 run 'ls -d x'
 finish

@@ -121,6 +121,12 @@ run 'voxmend batch clash -o clashed --format ply --repair "--format ply"'
 # Options of one mesh are about its grid; names that are no UTF-8, and too long ones, cost themselves alone.
 printf 'path,id,options\n../in/cube.off,report,--rep=x.json\n../in/cube.off,help,--help\n../in/cube.off,dry,--dr\n../in/cube.off,v1.5,-r 4\n../in/cube.off,%s/long,\n' "$(printf '%0300d' 0)" >data/own.csv
 run 'voxmend batch data/own.csv -o own -r 8 --pictures 0; cut -f 1-4 own/failures.tsv | sed "s/00*/0/"; find own -name "*.binvox"'
+# The command that repeats a failure names its file, whatever the name.
+mkdir odd
+printf 'OFF\n3 x\n' >"odd/$(printf 'a\tb%%d\\n'"'"'.off')"
+printf 'OFF\n4 x\n' >"odd/$(printf 'c\nd e.off')"
+run 'voxmend batch odd -o odd-out -r 8 --pictures 0 -q; cut -f 2-5 odd-out/failures.tsv'
+run 'cut -f 5 odd-out/failures.tsv | sed 1d >commands; while read -r line; do eval "$line" || true; done <commands'
 # Options that keep a command from writing are no success.
 run 'voxmend batch clash/a.off -o helped -r 4 --view --help --pictures 0; cut -f 1-4 helped/failures.tsv'
 mkdir latin

@@ -44,3 +44,18 @@ status=0
 wait "$job" || status=$?
 kill "$watch" 2>/dev/null || true
 [ "$status" -eq 143 ] || { echo "FAILED: exit status $status of a second signal"; exit 1; }
+
+# A batch, which lets what is in work come to its end at the first one: here it never does.
+echo fifo >"$work/list.txt"
+"$VOXMEND" batch "$work/list.txt" -o "$work/batch" -r 8 >/dev/null 2>"$work/err" 3<&- &
+job=$!
+for delay in 1 0.5; do
+  sleep "$delay"
+  kill -TERM "$job" 2>/dev/null || true
+done
+(sleep 5; kill -KILL "$job") 2>/dev/null 3<&- &
+watch=$!
+status=0
+wait "$job" || status=$?
+kill "$watch" 2>/dev/null || true
+[ "$status" -eq 143 ] || { echo "FAILED: exit status $status of a batch"; cat "$work/err"; exit 1; }

@@ -204,6 +204,37 @@ class Batches(unittest.TestCase):
         self.assertNotEqual(outputs(self.at("files1")), outputs(self.at("files3")))
         self.assertEqual(sorted(name for _, name in self.members(self.at("files3"))), sorted(name for _, name in found))
 
+    def test_tars_of_folders(self):
+        """Variants are files of their mesh, after it; a grid that is a folder is none."""
+        prisms = self.at("in/prism/train")
+        for name, options in (("both", "-r 9"), ("alone", "--no-grid")):
+            voxmend.batch.run(prisms, self.at(name), options=options + ' --augment "-n 3 --first 4 -r 10 --format npy"')
+            voxmend.batch.export(self.at(name), self.at(name + "-tars"), to="webdataset", content="files")
+            files = {file: data for (_, file), data in self.members(self.at(name + "-tars")).items()}
+            for mesh in ("l_prism 0", "star_prism 0"):
+                made = ["variants.%06d.npy%s" % (v, end) for v in (4, 5, 6) for end in ("", ".json")]
+                self.assertEqual([file[len(mesh + "%2Ev1."):] for file in files if os.path.basename(file).startswith(mesh)],
+                                 (["binvox"] if name == "both" else []) + made + ["json"])
+                folder = next(at for at, _, _ in os.walk(self.at(name)) if at.endswith("/%s.v1.variants" % mesh))
+                key = next(file for file in files if file.endswith(mesh + "%2Ev1.json"))[:-len("json")]
+                for file in made:
+                    with open(os.path.join(folder, file[len("variants."):]), "rb") as one:
+                        self.assertEqual(one.read(), files[key + file])
+                self.assertEqual(json.loads(files[key + "json"])["shape"], [9 if name == "both" else 10] * 3)
+        with self.assertRaisesRegex(voxmend.EmptyError, "no grids .--no-grid., but variants"):
+            voxmend.batch.export(self.at("alone"), self.at("never"), to="webdataset")
+        os.rename(os.path.join(folder, "000005.npy"), os.path.join(folder, "000007.npy"))
+        with self.assertRaisesRegex(voxmend.FormatError, "not as it was written"):
+            voxmend.batch.export(self.at("alone"), self.at("never"), to="webdataset", content="files")
+        voxmend.batch.run(prisms, self.at("arrays"), options="-r 9 --format zarr")
+        with self.assertRaisesRegex(voxmend.ArgumentError, '--format zarr is a folder.* content "bits"'):
+            voxmend.batch.export(self.at("arrays"), self.at("never"), to="webdataset", content="files")
+        voxmend.batch.export(self.at("arrays"), self.at("array-tars"), to="webdataset")
+        voxmend.batch.export(self.at("both"), self.at("grid-tars"), to="webdataset")
+        bits = [[data for (_, file), data in self.members(self.at(name)).items() if file.endswith("bits.npy")]
+                for name in ("array-tars", "grid-tars")]
+        self.assertEqual((len(bits[0]), bits[0]), (2, bits[1]))
+
     def test_changed_output_is_refused(self):
         path = os.path.join(self.out, "ring/test/torus 0.v1.npy")
         with open(path, "r+b") as file:

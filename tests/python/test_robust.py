@@ -4,6 +4,7 @@ samples/generate_samples makes."""
 import copy
 import errno
 import gc
+import io
 import multiprocessing
 import os
 import pathlib
@@ -49,6 +50,35 @@ class Values(unittest.TestCase):
             self.assertIsInstance(caught.exception, voxmend.VoxmendError)
             self.assertNotIn("\n", str(caught.exception))
 
+    def test_messages_for_python(self):
+        """They name what a Python program has, and what is wanted."""
+        cube = voxmend.load(sample("cube"))
+        with open(sample("cube"), "rb") as file:
+            content = file.read()
+        with tempfile.TemporaryDirectory() as folder:
+            stl, distances = os.path.join(folder, "c.stl"), os.path.join(folder, "d.npy")
+            cube.save(stl)
+            with open(stl, "rb") as file:
+                binary = file.read()
+            voxmend.distance(cube, 6).save(distances)
+            for kind, words, call in (
+                    (ValueError, "give it with Sampler.put first", lambda: voxmend.Sampler(16).batch(2)),
+                    (TypeError, "ndarray, which has no origin and no pitch; give a grid, a field or an octree",
+                     lambda: voxmend.voxelize(cube, like=numpy.zeros((4, 4, 4)))),
+                    (ValueError, r"%d bytes that are no path.* io\.BytesIO" % len(content), lambda: voxmend.voxelize(content, 16)),
+                    (ValueError, r"%d bytes that are no path.* io\.BytesIO" % len(binary), lambda: voxmend.voxelize(binary, 16)),
+                    (ValueError, r"characters that are no path.* io\.StringIO", lambda: voxmend.info(content.decode())),
+                    (ValueError, "at_least= or below= of voxmend.read .* voxmend.read_field", lambda: voxmend.read(distances)),
+                    (ValueError, "noise goes with displace", lambda: voxmend.Sampler(16, noise=100)),
+                    (FileNotFoundError, "no.such", lambda: voxmend.load(b"no\nsuch"))):
+                with self.assertRaisesRegex(kind, words) as caught:
+                    call()
+                self.assertIsInstance(caught.exception, voxmend.VoxmendError)
+                self.assertNotRegex(str(caught.exception), "vxm_|--[a-z]")
+                self.assertLess(len(str(caught.exception)), 240)
+        self.assertEqual(voxmend.voxelize(io.BytesIO(content), 8), voxmend.voxelize(cube, 8))
+        voxmend.Sampler(16, noise=100, displace=0.1)
+
     def test_kinds_of_numbers(self):
         mesh, make = voxmend.load(sample("cube")), voxmend.Sampler
         mixed = [[0, 0, 0], [1, 0, "x"], [0, 1, 0]]
@@ -91,7 +121,7 @@ class Values(unittest.TestCase):
             lambda: voxmend.VoxelGrid(numpy.full((2, 2, 2), nan)), lambda: voxmend.VoxelGrid(numpy.zeros((2, 0, 2))),
             lambda: voxmend.VoxelGrid(numpy.zeros((2, 2, 2)), pitch=0), lambda: voxmend.VoxelGrid(numpy.zeros((2, 2, 2)), [1, 2]),
             lambda: voxmend.VoxelGrid(numpy.zeros((2, 2, 2)), origin=[0, 0, nan]), lambda: make(16, seed=-1), lambda: make(16, seed=1 << 64),
-            lambda: make(16, scale=nan), lambda: make(16, noise=-1), lambda: make(16, rotate=[[[nan] * 3] * 3]), lambda: make(0),
+            lambda: make(16, scale=nan), lambda: make(16, noise=-1), lambda: make(16, noise=0, displace=0.1), lambda: make(16, rotate=[[[nan] * 3] * 3]), lambda: make(0),
             lambda: sampler().batch(-1), lambda: sampler().batch([1 << 32]), lambda: sampler().put(mesh, -1),
             lambda: sampler().put(mesh, 1 << 32), lambda: voxmend.configure(threads=-1), lambda: voxmend.configure(memory_limit=-1),
             lambda: voxmend.configure(memory_limit=1 << 64), lambda: voxmend.load(sample("cube"), format="off\0"),

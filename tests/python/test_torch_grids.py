@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """GridDataset: the same grids from the folder of a batch, its tars and its Zarr; orders, ranks and workers."""
 import collections
+import io
+import json
 import os
 import pickle
 import tempfile
 import unittest
+import warnings
 
 import numpy
 import torch
@@ -14,7 +17,7 @@ import voxmend
 import voxmend.batch
 from voxmend.torch import GridDataset, IterableVoxelDataset, VoxelDataset, unpack
 
-from batch_lib import make_batch
+from batch_lib import make_batch, remove
 
 try:
     import zarr
@@ -67,6 +70,107 @@ class Grids(unittest.TestCase):
         self.assertEqual((data.shape, tuple(data[0][0].shape)), ((21, 10, 13), (1, 21, 10, 13)))
         with open(os.path.join(out, ".batch", "journal-0-of-1.jsonl")) as file:
             self.assertEqual(len(data), sum('"status":"ok"' in line for line in file))
+
+    def test_numbers_are_no_voxels(self):
+        """Of files in tars as of those of the batch: the same are taken, and the same refused."""
+        meshes, out, tars = (os.path.join(self.folder.name, name) for name in ("in/ring/train", "numbers", "number-tars"))
+        for options, refused in (("--distance signed", True), ("--coverage 2 --scalar uint8", True), ("--coverage 2", True),
+                                 ("--labels part", False), ("", False)):
+            voxmend.batch.run(meshes, out, options="-r 12 --format npy " + options)
+            voxmend.batch.export(out, tars, to="webdataset", content="files")
+            folder, files = GridDataset(out), GridDataset(tars)
+            self.assertEqual(folder.names, files.names)
+            for i in range(len(folder)):
+                if refused:
+                    for data in folder, files:
+                        with self.assertRaises(voxmend.NumbersError):
+                            data[i]
+                else:
+                    self.assertTrue((folder[i][0] == files[i][0]).all())
+            remove(out)
+            remove(tars)
+
+    def rewritten(self, array, said=None):
+        """A tar of one grid, whose array and .json are others."""
+        folder = tempfile.mkdtemp(dir=self.folder.name)
+        files = [("npy", io.BytesIO())] + ([("npy.json", io.BytesIO(json.dumps(said).encode()))] if said else [])
+        numpy.save(files[0][1], array)
+        line = {"item": "a.off", "class": "a", "split": "", "shape": list(array.shape[:3]), "origin": [0, 0, 0], "tar": "x",
+                "members": []}
+        with open(os.path.join(folder, "x"), "wb") as tar:
+            for name, file in files:
+                line["members"].append({"name": name, "offset": tar.tell(), "bytes": len(file.getvalue())})
+                tar.write(file.getvalue())
+        with open(os.path.join(folder, "index.jsonl"), "w") as index:
+            index.write(json.dumps(line) + "\n")
+        return GridDataset(folder)
+
+    def test_what_is_bits(self):
+        """As voxmend.read has it, of all types and what is said of them."""
+        mask = numpy.zeros((3, 4, 5), bool)
+        mask[1, 2:, ::2] = True
+        for dtype in ("bool", "u1", "i1", "u2", ">i4", "f2", "f4", ">f8"):
+            for factor in (1, 255, 2, -1):
+                for kind in (None, "numbers", "distance", "coverage", "labels", "confidence", "colors", "other"):
+                    if dtype == "bool" and factor != 1 or dtype == "u1" and factor < 0:
+                        continue
+                    array, said = (mask * numpy.array(factor)).astype(dtype), {
+                        "format": "voxmend npy", "version": 1, "dims": list(mask.shape), "order": "z fastest, then y, then x",
+                        "origin": [0, 0, 0], "voxel_size": [1, 1, 1]}
+                    if kind:
+                        said["values"] = kind
+                    path = os.path.join(self.folder.name, "said.npy")
+                    numpy.save(path, array)
+                    with open(path + ".json", "w") as file:
+                        json.dump(said, file)
+                    try:
+                        with warnings.catch_warnings():
+                            warnings.simplefilter("error")
+                            wanted = voxmend.read(path).matrix
+                    except voxmend.NumbersError:
+                        wanted = None
+                    data = self.rewritten(array, said)
+                    if wanted is None:
+                        with self.assertRaises(voxmend.NumbersError, msg=(dtype, factor, kind)):
+                            data[0]
+                    else:
+                        self.assertTrue((data[0][0][0].numpy() == wanted).all(), (dtype, factor, kind))
+        with self.assertRaises(voxmend.NumbersError):
+            self.rewritten(numpy.zeros((3, 4, 5, 4), numpy.uint8))[0]
+
+    def test_variants(self):
+        """Of a batch without grids they are the items, from the folder and the tars; else the grids are."""
+        meshes, out, tars = (os.path.join(self.folder.name, name) for name in ("in", "variants", "variant-tars"))
+        draws = '--augment "-n 3 -r 10 --rotate any --format %s"'
+        voxmend.batch.run(meshes, out, options="--no-grid " + draws % "npy")
+        voxmend.batch.export(out, tars, to="webdataset", content="files", shuffle=1, max_bytes=30000)
+        folder, files = GridDataset(out, "train"), GridDataset(tars, "train")
+        self.assertEqual((len(folder), folder.shape, folder.classes), (24, (10, 10, 10), ["ball", "prism", "ring"]))
+        self.assertEqual(folder.names[:4], 3 * ["ball/train/flipped 0.v1.off"] + ["ball/train/repeated 0.v1.off"])
+        found = {}
+        for data in folder, files:
+            for i, name in enumerate(data.names):
+                found.setdefault(name, []).append(data[i][0])
+                self.assertEqual(data.classes[data[i][1]], name.split("/")[0])
+        for name, voxels in found.items():
+            self.assertEqual(len(voxels), 6)
+            for v in range(3):
+                path = os.path.join(out, name[:-len(".off")] + ".variants", "%06d.npy" % v)
+                self.assertTrue((voxels[v][0].numpy() == numpy.load(path)).all())
+                self.assertTrue((voxels[v] == voxels[v + 3]).all())
+        for path in (out, tars):
+            remove(path)
+        voxmend.batch.run(meshes, out, options="-r 12 --format npy " + draws % "rle")
+        voxmend.batch.export(out, tars, to="webdataset", content="files")
+        for data in GridDataset(out), GridDataset(tars):
+            self.assertEqual((len(data), data.shape), (11, (12, 12, 12)))
+        for path in (out, tars):
+            remove(path)
+        voxmend.batch.run(os.path.join(meshes, "prism"), out, options="--no-grid " + draws % "rle")
+        self.assertEqual(len(GridDataset(out)), 9)
+        voxmend.batch.export(out, tars, to="webdataset", content="files")
+        with self.assertRaisesRegex(voxmend.ArgumentError, "no variant as .npy.*--format npy"):
+            GridDataset(tars)
 
     def test_refusals(self):
         voxmend.batch.export(self.out, self.files, to="webdataset", content="files")
