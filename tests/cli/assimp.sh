@@ -72,6 +72,22 @@ for file in scene.lws scene.irr doll.smd; do
   run "voxmend info $file"
 done
 
+say "# COLLADA comes with y upward, whatever the file says"
+cat >post.dae <<'END'
+<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit name="meter"
+meter="1"/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a"
+count="12">0 0 0 1 0 0 0 1 0 0 0 5</float_array><technique_common><accessor source="#a" count="4" stride="3"><param name="X"
+type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source><vertices
+id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="4"><input semantic="VERTEX" source="#v"
+offset="0"/><p>0 2 1 0 1 3 1 2 3 2 0 3</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>
+<visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes><scene>
+<instance_visual_scene url="#s"/></scene></COLLADA>
+END
+run 'voxmend view post.dae -o post.png -r 16'
+run 'voxmend view post.dae -o y.png -r 16 --up y -q && cmp post.png y.png'
+run 'voxmend view post.dae -o z.png -r 16 --up z -q && cmp -s post.png z.png'
+rm -f post.dae post.png y.png z.png
+
 say "# damage"
 head -c 2000 in/stool.glb >cut.glb
 printf 'what is this\n' >words.fbx
