@@ -40,6 +40,22 @@ run 'told info models/wedge.gltf'
 
 mv models/away.bin models/wedge.bin
 
+say "# positions in whole numbers, in a buffer beside the file and within it"
+printf '\0\0\0\0\0\0\0\0\144\0\0\0\0\0\0\0\0\0\144\0\0\0\0\0\0\0\0\0\144\0\0\0' >'models/whole numbers.bin'
+printf '\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0' >>'models/whole numbers.bin'
+sed -e 's|wedge.bin|whole%20numbers.bin|; s|"mesh":0}\]|"mesh":0,"scale":[0.01,0.01,0.01]}],"extensionsRequired":["KHR_mesh_quantization"]|' \
+  -e 's|5126|5122|; s|"byteLength":48}|"byteLength":32,"byteStride":8}|; s|"byteOffset":48|"byteOffset":32|; s|"byteLength":72|"byteLength":56|' \
+  models/wedge.gltf >models/whole.gltf
+run 'voxmend info models/whole.gltf | grep -E "  volume|  bounds|closed:"'
+sed "s|whole%20numbers.bin|data:application/octet-stream;base64,$(base64 <'models/whole numbers.bin' | tr -d '\n')|" \
+  models/whole.gltf >within.gltf
+run 'voxmend info within.gltf | grep -E "  volume|  bounds|closed:"'
+sed 's|KHR_mesh_quantization|EXT_meshopt_compression|' within.gltf >packed.gltf
+run 'voxmend info packed.gltf'
+mv 'models/whole numbers.bin' models/away.bin
+run 'voxmend info models/whole.gltf'
+rm models/my* models/100* models/a%* models/away.bin plain.bin within.gltf packed.gltf
+
 say "# a buffer of somebody else's"
 cp models/wedge.bin secret.bin
 ln -s ../secret.bin models/out.bin

@@ -45,10 +45,14 @@ static void make_path(char *path, size_t size, const vxm_reader_request *request
   snprintf(path, size, "voxmend-mesh.%s", request->hint);
 }
 
+static bool is_gltf(const vxm_reader_request *request) {
+  return strcmp(request->hint, "gltf") == 0 || strcmp(request->hint, "glb") == 0;
+}
+
 static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, const char *path,
-                         vxm_error *error) {
+                         const vxm_gltf *gltf, vxm_error *error) {
   vxm_assimp_files files;
-  vxm_assimp_files_init(&files, request, soup->context, path);
+  vxm_assimp_files_init(&files, request, soup->context, path, gltf);
   struct aiPropertyStore *properties = make_properties();
   if (!properties)
     return vxm_fail(error, VXM_ERROR_MEMORY, "not enough memory to read the file");
@@ -57,7 +61,7 @@ static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, cons
   if (!scene)
     return fail_import(request->name, error);
   if (soup->appearance)
-    soup->appearance->is_product = strcmp(request->hint, "gltf") == 0 || strcmp(request->hint, "glb") == 0;
+    soup->appearance->is_product = is_gltf(request);
   vxm_status status = vxm_assimp_flatten(soup, scene, error);
   aiReleaseImport(scene);
   return status;
@@ -70,12 +74,20 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
     return vxm_fail_at(error, VXM_ERROR_UNAVAILABLE, (vxm_place){request->name, 0, -1, -1},
                        "this build of Assimp does not read %s files", extension);
   make_path(path, sizeof path, request);
-  return import(soup, request, path, error);
+  vxm_gltf gltf = {0};
+  vxm_status status = VXM_OK;
+  if (is_gltf(request))
+    status = vxm_gltf_prepare(&gltf, request, soup->context, &soup->warnings, error);
+  if (status == VXM_OK)
+    status = import(soup, request, path, is_gltf(request) ? &gltf : NULL, error);
+  vxm_gltf_free(&gltf, soup->context);
+  return status;
 }
 
 /** The first question makes all importers; nothing is loaded later. */
 static void prepare(void) {
   aiIsExtensionSupported(".glb");
+  vxm_gltf_start();
 }
 
 static const vxm_reader reader = {prepare, read_scene, NULL};
