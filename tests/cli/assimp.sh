@@ -40,6 +40,22 @@ run 'told info models/wedge.gltf'
 
 mv models/away.bin models/wedge.bin
 
+say "# a name in a URI: decoded once, and then a name as any other"
+cp models/wedge.bin 'models/my wedge.bin'
+cp models/wedge.bin 'models/100%.bin'
+cp models/wedge.bin models/a%20b.bin
+for uri in my%20wedge.bin ./%6d%79%20wedge.bin %77edge.bin 100%.bin a%2520b.bin; do
+  say "# $uri"
+  sed "s|wedge.bin|$uri|" models/wedge.gltf >models/other.gltf
+  run 'voxmend info models/other.gltf --strict | grep "  volume"'
+done
+cp models/wedge.bin plain.bin
+for uri in %2e%2e%2fplain.bin %2e./plain.bin %2Fetc%2Fpasswd %252e%252e%252fplain.bin wedge.bin%00.txt; do
+  say "# $uri"
+  sed "s|wedge.bin|$uri|" models/wedge.gltf >models/other.gltf
+  run 'voxmend info -q models/other.gltf'
+done
+
 say "# positions in whole numbers, in a buffer beside the file and within it"
 printf '\0\0\0\0\0\0\0\0\144\0\0\0\0\0\0\0\0\0\144\0\0\0\0\0\0\0\0\0\144\0\0\0' >'models/whole numbers.bin'
 printf '\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0' >>'models/whole numbers.bin'

@@ -4,6 +4,7 @@
 
 #include "base/context.h"
 #include "modules/assimp/assimp.h"
+#include "modules/assimp/uri.h"
 
 /** An open file. */
 typedef struct open_file {
@@ -82,10 +83,25 @@ static bool find_here(open_file *f, const vxm_assimp_files *files, const char *p
   return true;
 }
 
+/** The name of another file, in its own block: in glTF it is a URI, which Assimp hands on as it stands. */
+static char *name_of(const vxm_assimp_files *files, const char *path) {
+  size_t size = strlen(path) + 1;
+  char *name = vxm_alloc(files->context, size, 1, NULL);
+  if (name) {
+    memcpy(name, path, size);
+    if (files->gltf)
+      vxm_uri_decode(name);
+  }
+  return name;
+}
+
 static bool fetch(open_file *f, const vxm_assimp_files *files, const char *path) {
   const vxm_reader_request *request = files->request;
   vxm_reader_file file;
-  if (!request->fetch || !request->fetch(request->payload, files->context, path, &file))
+  char *name = name_of(files, path);
+  bool is_there = name && request->fetch && request->fetch(request->payload, files->context, name, &file);
+  vxm_free(files->context, name);
+  if (!is_there)
     return false;
   f->data = f->fetched = file.data;
   f->size = file.size;
