@@ -120,6 +120,26 @@ run 'voxmend view post.dae -o y.png -r 16 --up y -q && cmp post.png y.png'
 run 'voxmend view post.dae -o z.png -r 16 --up z -q && cmp -s post.png z.png'
 rm -f post.dae post.png y.png z.png
 
+say "# objects in files of their own within a 3MF, packed"
+"${TEST_PYTHON:-python3}" - <<'END'
+import zipfile
+core = 'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"'
+production = 'xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06" requiredextensions="p"'
+with zipfile.ZipFile("parts.3mf", "w", zipfile.ZIP_DEFLATED) as z:
+    z.writestr("_rels/.rels", '<?xml version="1.0"?><Relationships '
+               'xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
+               'Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+    # Far behind the head, across the pieces in which it is unpacked.
+    head = f'<?xml version="1.0"?><model {core} {production}><metadata name="a">'
+    item = '</metadata><resources><object id="2"><components><component p:'
+    text = head + "a" * (65536 - len(head) - len(item)) + item + (
+        'path="/3D/Objects/o.model" objectid="1"/></components></object></resources><build><item objectid="2"/></build></model>')
+    z.writestr("3D/3dmodel.model", text)
+    z.writestr("3D/Objects/o.model", f'<?xml version="1.0"?><model {core}><resources/><build/></model>')
+END
+run 'voxmend info parts.3mf'
+rm parts.3mf
+
 say "# damage"
 head -c 2000 in/stool.glb >cut.glb
 printf 'what is this\n' >words.fbx

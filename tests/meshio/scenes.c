@@ -346,20 +346,22 @@ static void zip_add(bytes *archive, bytes *directory, int *count, const char *na
 }
 
 /** A wedge, and a pair of it; placed twice. */
-static bytes three_mf(void) {
-  static const char model[] =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?><model unit=\"millimeter\" "
-      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object id=\"1\" "
-      "type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" "
-      "z=\"0\"/><vertex "
-      "x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" "
-      "v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" "
-      "v3=\"3\"/><triangle "
-      "v1=\"2\" v2=\"0\" v3=\"3\"/></triangles></mesh></object><object id=\"2\" type=\"model\"><components>"
-      "<component objectid=\"1\"/><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 "
-      "0\"/></components>"
-      "</object></resources><build><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 10 0\"/>"
-      "<item objectid=\"1\"/></build></model>";
+static const char three_mf_model[] =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?><model unit=\"millimeter\" "
+    "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object id=\"1\" "
+    "type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" "
+    "z=\"0\"/><vertex "
+    "x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" "
+    "v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" "
+    "v3=\"3\"/><triangle "
+    "v1=\"2\" v2=\"0\" v3=\"3\"/></triangles></mesh></object><object id=\"2\" type=\"model\"><components>"
+    "<component objectid=\"1\"/><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 "
+    "0\"/></components>"
+    "</object></resources><build><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 10 0\"/>"
+    "<item objectid=\"1\"/></build></model>";
+
+/** An archive of a model, and of another file that it may name. */
+static bytes three_mf_of(const char *model, const char *other) {
   static const char types[] =
       "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
       "<Default Extension=\"model\" "
@@ -374,6 +376,8 @@ static bytes three_mf(void) {
   zip_add(&archive, &directory, &count, "[Content_Types].xml", types);
   zip_add(&archive, &directory, &count, "_rels/.rels", relations);
   zip_add(&archive, &directory, &count, "3D/3dmodel.model", model);
+  if (other)
+    zip_add(&archive, &directory, &count, "3D/Objects/object_1.model", other);
   const uint16_t counts[] = {0, 0, (uint16_t)count, (uint16_t)count};
   const uint32_t place[] = {(uint32_t)directory.size, (uint32_t)archive.size};
   bytes_add(&archive, directory.data, directory.size);
@@ -383,6 +387,10 @@ static bytes three_mf(void) {
   bytes_add(&archive, "\0\0", 2);
   bytes_free(&directory);
   return archive;
+}
+
+static bytes three_mf(void) {
+  return three_mf_of(three_mf_model, NULL);
 }
 
 static void test_3mf(void **state) {
@@ -402,6 +410,55 @@ static void test_3mf(void **state) {
   }
   bytes_free(&b);
   read_fails("PK\3\4rubbish", 11, "a.zip", VXM_ERROR_FORMAT, "is a zip archive: unpack it first");
+}
+
+/** Extensions of 3MF. `head` are attributes of the model, `item` is one of an item. */
+static bytes three_mf_with(const char *head, const char *item, const char *other) {
+  char model[2000];
+  const char *before = strstr(three_mf_model, "xmlns="),
+             *last = strstr(three_mf_model, "<item objectid=\"1\"");
+  snprintf(model, sizeof model, "%.*s%s %.*s<item %s%s", (int)(before - three_mf_model), three_mf_model, head,
+           (int)(last - before), before, item, last + strlen("<item"));
+  return three_mf_of(model, other);
+}
+
+#define PRODUCTION "xmlns:p='http://schemas.microsoft.com/3dmanufacturing/production/2015/06'"
+#define BEAMS "xmlns:b = \"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\""
+#define MATERIAL "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\""
+
+static void test_3mf_extensions(void **state) {
+  (void)state;
+  static const struct {
+    const char *head, *item, *told;
+  } cases[] = {
+      {PRODUCTION " requiredextensions=\"p\"", "p:UUID=\"3\"", NULL},
+      {PRODUCTION " requiredextensions=\"p\"", "p:path=\"/3D/Objects/object_1.model\"",
+       "a.3mf: its objects lie in files of their own within it (the 3MF production extension"},
+      {PRODUCTION, "p:UUID='3' p:path = '/3D/Objects/object_1.model'", "the 3MF production extension"},
+      {PRODUCTION, "", NULL},
+      {PRODUCTION, "q:path=\"/a\"", NULL},
+      {MATERIAL " requiredextensions=\"m\"", "", NULL},
+      {BEAMS, "", NULL},
+      {BEAMS " " MATERIAL " requiredextensions=\"m b\"", "",
+       "a.3mf: it needs the 3MF extension http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02, "
+       "which "
+       "is not read: export it without, or as .stl or .obj"},
+      {BEAMS " requiredextensions=\"bb\"", "", NULL},
+  };
+  if (!has_module("assimp"))
+    skip();
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    bytes b = three_mf_with(cases[i].head, cases[i].item, three_mf_model);
+    if (cases[i].told)
+      read_fails(b.data, b.size, "a.3mf", VXM_ERROR_FORMAT, cases[i].told);
+    else {
+      vxm_soup *soup = read_data(b.data, b.size, "a.3mf");
+      expect_counts(soup, 12, 12);
+      vxm_soup_destroy(soup);
+    }
+    damage_many(&b, "a.3mf", 4);
+    bytes_free(&b);
+  }
 }
 
 #define COLLADA_HEAD                                                                          \
@@ -563,6 +620,7 @@ int main(void) {
                                      cmocka_unit_test(test_quantized_damage),
                                      cmocka_unit_test(test_required),
                                      cmocka_unit_test(test_3mf),
+                                     cmocka_unit_test(test_3mf_extensions),
                                      cmocka_unit_test(test_collada),
                                      cmocka_unit_test(test_options),
                                      cmocka_unit_test(test_small_formats),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The module voxmend-assimp.so: glTF, 3MF, COLLADA, FBX, 3DS and the rest through Assimp's C functions. */
 #include "modules/assimp/assimp.h"
+#include "modules/assimp/three_mf.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -78,6 +79,8 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
   vxm_status status = VXM_OK;
   if (is_gltf(request))
     status = vxm_gltf_prepare(&gltf, request, soup->context, &soup->warnings, error);
+  if (strcmp(request->hint, "3mf") == 0)
+    status = vxm_three_mf_check(request, soup->context, error);
   if (status == VXM_OK)
     status = import(soup, request, path, is_gltf(request) ? &gltf : NULL, error);
   vxm_gltf_free(&gltf, soup->context);
