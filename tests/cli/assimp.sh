@@ -143,8 +143,10 @@ rm parts.3mf
 say "# damage"
 head -c 2000 in/stool.glb >cut.glb
 printf 'what is this\n' >words.fbx
+head -c 300 models/wedge.gltf >cut.gltf
 printf '{"asset":{"version":"2.0"}}' >nothing.gltf
 : >empty.glb
+run 'voxmend info cut.gltf'
 for file in cut.glb words.fbx nothing.gltf empty.glb; do
   run "told info $file"
 done

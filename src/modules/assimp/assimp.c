@@ -20,9 +20,13 @@ static void last_message(char *text, size_t size) {
       *c = ' ';
 }
 
-static vxm_status fail_import(const char *name, vxm_error *error) {
+/** The name that Assimp knows is none of the user's, and messages with it tell no more than that it is not as
+ * it should be. */
+static vxm_status fail_import(const char *name, const char *path, vxm_error *error) {
   char message[300];
   last_message(message, sizeof message);
+  if (strstr(message, path))
+    snprintf(message, sizeof message, "it is likely cut off or damaged, or no %s file", strrchr(path, '.'));
   if (strstr(message, "bad_alloc"))
     return vxm_fail_at(error, VXM_ERROR_MEMORY, (vxm_place){name, 0, -1, -1}, "not enough memory to read it");
   return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1}, "Assimp cannot read it: %s",
@@ -60,7 +64,7 @@ static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, cons
   const struct aiScene *scene = aiImportFileExWithProperties(path, 0, &files.io, properties);
   aiReleasePropertyStore(properties);
   if (!scene)
-    return fail_import(request->name, error);
+    return fail_import(request->name, path, error);
   if (soup->appearance)
     soup->appearance->is_product = is_gltf(request);
   vxm_status status = vxm_assimp_flatten(soup, scene, error);
