@@ -34,6 +34,7 @@ END
 run 'voxmend info models/wedge.gltf'
 run 'cd models && voxmend repair -q wedge.gltf -o ../wedge.off'
 run 'cat wedge.off'
+run 'voxmend voxelize models/wedge.gltf -o c.npy -r 8 --mode surface --color mesh'
 run 'told info - <models/wedge.gltf'
 mv models/wedge.bin models/away.bin
 run 'told info models/wedge.gltf'
