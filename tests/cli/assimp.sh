@@ -119,6 +119,7 @@ END
 run 'voxmend view post.dae -o post.png -r 16'
 run 'voxmend view post.dae -o y.png -r 16 --up y -q && cmp post.png y.png'
 run 'voxmend view post.dae -o z.png -r 16 --up z -q && cmp -s post.png z.png'
+run 'voxmend voxelize post.dae -o c.npy -r 8 --mode surface --color mesh'
 rm -f post.dae post.png y.png z.png
 
 say "# objects in files of their own within a 3MF, packed"

@@ -89,13 +89,13 @@ static vxm_status take_material(vxm_appearance *look, const struct aiScene *scen
   struct aiString name = {.length = 0}, path = {.length = 0};
   uint32_t index, image;
   aiGetMaterialString(from, AI_MATKEY_NAME, &name);
-  vxm_status status = vxm_appearance_add_material(look, name.data, strlen(name.data), &index, error);
-  if (status != VXM_OK)
+  bool is_made_up = strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0; /* where the file has none */
+  vxm_status status =
+      vxm_appearance_add_material(look, name.data, is_made_up ? 0 : strlen(name.data), &index, error);
+  if (status != VXM_OK || is_made_up)
     return status;
   vxm_material *material = &look->materials[index];
   struct aiColor4D color;
-  if (strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0) /* Assimp's own, where the file has none */
-    return VXM_OK;
   /* Assimp gives the base colour of glTF under this name too. */
   if (aiGetMaterialColor(from, AI_MATKEY_COLOR_DIFFUSE, &color) == aiReturn_SUCCESS) {
     const double rgb[3] = {(double)color.r, (double)color.g, (double)color.b};
