@@ -159,7 +159,7 @@ run 'ls'
 if grep -q "^#define HAVE_PNG" "$BUILDDIR/config.h"; then
   say "# colours: a texture within the file and beside it, times base colour and vertex colours"
   "${TEST_PYTHON:-python3}" "$SRCDIR/tests/cli/colors.py" make
-  for mesh in square beside; do
+  for mesh in square beside whole; do
     run "voxmend info $mesh.gltf | grep -E 'colours|materials|textures'"
     run "voxmend voxelize $mesh.gltf -o c.npy -q -r 8 --mode surface --color mesh && \"\${TEST_PYTHON:-python3}\" \"\$SRCDIR/tests/cli/colors.py\" list c.npy"
   done
