@@ -179,9 +179,11 @@ static bool is_named(const char *path, const char *const *formats) {
   return false;
 }
 
-/** The axis that points up in most files of a mesh's format. */
+/** The axis that points up in most files of a mesh's format. COLLADA says which, and is turned to y where it
+ * is read.
+ */
 static void guess_up(request *given) {
-  static const char *const y_formats[] = {"obj", "gltf", "glb", "wrl", "vrml", "x3d", "fbx", NULL};
+  static const char *const y_formats[] = {"obj", "gltf", "glb", "dae", "zae", "x3d", "fbx", NULL};
   const char *dot = strrchr(given->input, '.'), *slash = strrchr(given->input, '/');
   if (given->picture.up != 0 || !dot || (slash && dot < slash))
     return;
@@ -428,8 +430,8 @@ const cli_command cli_command_view = {
     .summary = "draw a picture of a grid or a mesh, or write a page that shows it",
     .notes =
         "A mesh is repaired and voxelized first. Standard input is read as a grid. Up is y in OBJ, glTF, "
-        "FBX\n"
-        "and VRML, else z, unless --up tells.\n\n"
+        "FBX,\n"
+        "X3D and COLLADA, else z, unless --up tells.\n\n"
         "A page is one file that needs no network: it is turned by mouse, touch and keys, cut along the "
         "axes,\n"
         "and switches labels; of a mesh it shows what is wrong with it, and what repair --level closed\n"

@@ -133,9 +133,12 @@ static bool is_part_of_gltf(const char *path, const char *output, int standard) 
       const char *uri = json_string_value(json_object_get(item, "uri"));
       if (!uri || uri[0] == '/' || strncmp(uri, "data:", strlen("data:")) == 0)
         continue;
-      int length = snprintf(name, sizeof name, "%.*s%s", slash ? (int)(slash - path + 1) : 0, path, uri);
-      decode(name);
-      found |= length > 0 && length < PATH_SIZE && is_same(name, 0, output, standard);
+      int folder = slash ? (int)(slash - path + 1) : 0;
+      int length = snprintf(name, sizeof name, "%.*s%s", folder, path, uri);
+      if (length >= PATH_SIZE)
+        continue;
+      decode(name + folder);
+      found |= length > 0 && is_same(name, 0, output, standard);
     }
   json_decref(root);
   return found;

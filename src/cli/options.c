@@ -440,6 +440,9 @@ const char *cli_output_format(cli_run *cli, const char *path, const char *format
   else if (!found && tells_format(path))
     cli_usage(cli, "-o '%s': what is asked for does not go into .%s; choose one of %s", path,
               extension_of(path), list);
+  else if (!found && *extension_of(path))
+    cli_usage(cli, "-o '%s': .%s is not written; choose one of %s, or give --format", path,
+              extension_of(path), list);
   else if (!found)
     cli_usage(cli, "the name '%s' does not tell the format; give --format: %s", path, list);
   if (found && strcmp(found, "png") == 0 && !strchr(path, '%')) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "meshio/common/format.h"
+#include "base/module.h"
 #include "base/open_beneath.h"
 #include "mesh/nonfinite.h"
 #include "meshio/common/utf16.h"
@@ -112,15 +113,24 @@ static const char *find_stranger(const unsigned char *data, size_t size) {
   return NULL;
 }
 
+static bool has_module(const char *name) {
+  char path[VXM_MODULE_PATH_MAX];
+  vxm_module_need need = {name, "", ""};
+  return vxm_module_find(path, &need, NULL) == VXM_OK;
+}
+
 static vxm_status refuse_unknown(const unsigned char *data, size_t size, const char *name, vxm_error *error) {
   vxm_place place = {name, 0, -1, -1};
-  const char *advice = find_stranger(data, size);
+  /* The extension first: .usdz is a zip archive too, but to unpack it does not help. */
+  const char *advice = vxm_external_format_refusal(vxm_path_extension(name));
   if (!advice)
-    advice = vxm_external_format_refusal(vxm_path_extension(name));
+    advice = find_stranger(data, size);
   if (advice)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "%s", advice);
-  return vxm_fail_at(error, VXM_ERROR_FORMAT, place,
-                     "not a known mesh format: neither off, obj, stl nor ply by content or extension");
+  return vxm_fail_at(
+      error, VXM_ERROR_FORMAT, place,
+      "not a known mesh format by content or extension; what is read here: off obj stl ply%s%s",
+      has_module("assimp") ? " " VXM_ASSIMP_FORMATS : "", has_module("occt") ? " " VXM_OCCT_FORMATS : "");
 }
 
 /** Whatever the format and the command: such faces are gone once the mesh is repaired, and no voxel tells it.

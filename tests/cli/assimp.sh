@@ -34,11 +34,44 @@ END
 run 'voxmend info models/wedge.gltf'
 run 'cd models && voxmend repair -q wedge.gltf -o ../wedge.off'
 run 'cat wedge.off'
+run 'voxmend voxelize models/wedge.gltf -o c.npy -r 8 --mode surface --color mesh'
 run 'told info - <models/wedge.gltf'
 mv models/wedge.bin models/away.bin
 run 'told info models/wedge.gltf'
 
 mv models/away.bin models/wedge.bin
+
+say "# a name in a URI: decoded once, and then a name as any other"
+cp models/wedge.bin 'models/my wedge.bin'
+cp models/wedge.bin 'models/100%.bin'
+cp models/wedge.bin models/a%20b.bin
+for uri in my%20wedge.bin ./%6d%79%20wedge.bin %77edge.bin 100%.bin a%2520b.bin; do
+  say "# $uri"
+  sed "s|wedge.bin|$uri|" models/wedge.gltf >models/other.gltf
+  run 'voxmend info models/other.gltf --strict | grep "  volume"'
+done
+cp models/wedge.bin plain.bin
+for uri in %2e%2e%2fplain.bin %2e./plain.bin %2Fetc%2Fpasswd %252e%252e%252fplain.bin wedge.bin%00.txt; do
+  say "# $uri"
+  sed "s|wedge.bin|$uri|" models/wedge.gltf >models/other.gltf
+  run 'voxmend info -q models/other.gltf'
+done
+
+say "# positions in whole numbers, in a buffer beside the file and within it"
+printf '\0\0\0\0\0\0\0\0\144\0\0\0\0\0\0\0\0\0\144\0\0\0\0\0\0\0\0\0\144\0\0\0' >'models/whole numbers.bin'
+printf '\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0' >>'models/whole numbers.bin'
+sed -e 's|wedge.bin|whole%20numbers.bin|; s|"mesh":0}\]|"mesh":0,"scale":[0.01,0.01,0.01]}],"extensionsRequired":["KHR_mesh_quantization"]|' \
+  -e 's|5126|5122|; s|"byteLength":48}|"byteLength":32,"byteStride":8}|; s|"byteOffset":48|"byteOffset":32|; s|"byteLength":72|"byteLength":56|' \
+  models/wedge.gltf >models/whole.gltf
+run 'voxmend info models/whole.gltf | grep -E "  volume|  bounds|closed:"'
+sed "s|whole%20numbers.bin|data:application/octet-stream;base64,$(base64 <'models/whole numbers.bin' | tr -d '\n')|" \
+  models/whole.gltf >within.gltf
+run 'voxmend info within.gltf | grep -E "  volume|  bounds|closed:"'
+sed 's|KHR_mesh_quantization|EXT_meshopt_compression|' within.gltf >packed.gltf
+run 'voxmend info packed.gltf'
+mv 'models/whole numbers.bin' models/away.bin
+run 'voxmend info models/whole.gltf'
+rm models/my* models/100* models/a%* models/away.bin plain.bin within.gltf packed.gltf
 
 say "# a buffer of somebody else's"
 cp models/wedge.bin secret.bin
@@ -72,11 +105,50 @@ for file in scene.lws scene.irr doll.smd; do
   run "voxmend info $file"
 done
 
+say "# COLLADA comes with y upward, whatever the file says"
+cat >post.dae <<'END'
+<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit name="meter"
+meter="1"/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a"
+count="12">0 0 0 1 0 0 0 1 0 0 0 5</float_array><technique_common><accessor source="#a" count="4" stride="3"><param name="X"
+type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source><vertices
+id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="4"><input semantic="VERTEX" source="#v"
+offset="0"/><p>0 2 1 0 1 3 1 2 3 2 0 3</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>
+<visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes><scene>
+<instance_visual_scene url="#s"/></scene></COLLADA>
+END
+run 'voxmend view post.dae -o post.png -r 16'
+run 'voxmend view post.dae -o y.png -r 16 --up y -q && cmp post.png y.png'
+run 'voxmend view post.dae -o z.png -r 16 --up z -q && cmp -s post.png z.png'
+run 'voxmend voxelize post.dae -o c.npy -r 8 --mode surface --color mesh'
+rm -f post.dae post.png y.png z.png
+
+say "# objects in files of their own within a 3MF, packed"
+"${TEST_PYTHON:-python3}" - <<'END'
+import zipfile
+core = 'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"'
+production = 'xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06" requiredextensions="p"'
+with zipfile.ZipFile("parts.3mf", "w", zipfile.ZIP_DEFLATED) as z:
+    z.writestr("_rels/.rels", '<?xml version="1.0"?><Relationships '
+               'xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
+               'Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+    # Far behind the head, across the pieces in which it is unpacked.
+    head = f'<?xml version="1.0"?><model {core} {production}><metadata name="a">'
+    item = '</metadata><resources><object id="2"><components><component p:'
+    text = head + "a" * (65536 - len(head) - len(item)) + item + (
+        'path="/3D/Objects/o.model" objectid="1"/></components></object></resources><build><item objectid="2"/></build></model>')
+    z.writestr("3D/3dmodel.model", text)
+    z.writestr("3D/Objects/o.model", f'<?xml version="1.0"?><model {core}><resources/><build/></model>')
+END
+run 'voxmend info parts.3mf'
+rm parts.3mf
+
 say "# damage"
 head -c 2000 in/stool.glb >cut.glb
 printf 'what is this\n' >words.fbx
+head -c 300 models/wedge.gltf >cut.gltf
 printf '{"asset":{"version":"2.0"}}' >nothing.gltf
 : >empty.glb
+run 'voxmend info cut.gltf'
 for file in cut.glb words.fbx nothing.gltf empty.glb; do
   run "told info $file"
 done
@@ -87,7 +159,7 @@ run 'ls'
 if grep -q "^#define HAVE_PNG" "$BUILDDIR/config.h"; then
   say "# colours: a texture within the file and beside it, times base colour and vertex colours"
   "${TEST_PYTHON:-python3}" "$SRCDIR/tests/cli/colors.py" make
-  for mesh in square beside; do
+  for mesh in square beside whole; do
     run "voxmend info $mesh.gltf | grep -E 'colours|materials|textures'"
     run "voxmend voxelize $mesh.gltf -o c.npy -q -r 8 --mode surface --color mesh && \"\${TEST_PYTHON:-python3}\" \"\$SRCDIR/tests/cli/colors.py\" list c.npy"
   done

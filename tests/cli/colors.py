@@ -98,6 +98,11 @@ def gltf(picture):
     write("square.gltf", json.dumps(scene))
     scene["images"][0] = {"uri": "maps/four%20parts.png"}
     write("beside.gltf", json.dumps(scene))
+    # The upper right, by coordinates in whole numbers.
+    data = data[:48] + struct.pack("<8H", *[round(65535 * c) for c in (0.6, 0.1, 0.7, 0.1, 0.7, 0.2, 0.6, 0.2)]) + data[64:]
+    scene["buffers"][0]["uri"] = uri % ("application/octet-stream", base64.b64encode(data).decode())
+    scene["accessors"][1].update(componentType=5123, normalized=True)
+    write("whole.gltf", json.dumps(scene))
 
 
 def show(path, most):

@@ -26,7 +26,7 @@ without_leak_check() {
   export ASAN_OPTIONS
 }
 
-# Times, memory and the number of processors differ between runs and machines.
+# Times, memory, the number of processors and what else is read differ between runs and machines.
 mask() {
   sed -E \
     -e 's/^(time +)[0-9.]+ ms: read [0-9.]+, repair [0-9.]+, voxelize [0-9.]+, write [0-9.]+/\1T ms: read T, repair T, voxelize T, write T/' \
@@ -34,6 +34,7 @@ mask() {
     -e 's/("(peak|memory)_bytes": )[0-9]+/\1N/' \
     -e 's/^(threads +)[0-9]+/\1N/' \
     -e '/memory limit/s/[0-9.]+ (bytes|KiB|MiB|GiB|TiB)/N bytes/g' \
+    -e 's/(what is read here: off obj stl ply).*/\1 .../' \
     -e 's/^(memory +)[0-9.]+ [KMG]iB/\1N MiB/'
 }
 

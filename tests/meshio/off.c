@@ -41,6 +41,31 @@ static void test_headers(void **state) {
   }
 }
 
+/** The third word of the counts' line is the number of edges, whatever it is: nothing is read from it. */
+static void test_edge_counts(void **state) {
+  (void)state;
+  static const char *const silent[] = {"OFF\n4 4 -1\n", "OFF4 4 -1\n", "OFF\n4 4 0.0\n", "OFF\n4 4 x\n",
+                                       "OFF 4 4 nan # edges\n"};
+  static const char *const told[] = {"OFF\n4 4 0 99\n", "OFF\n4 4 -1 7 8 # more\n", "OFF\n4 4 0 1 2 3\n",
+                                     "OFF\n4 4 6 0 0 0 0\n"};
+  char text[512];
+  for (size_t i = 0; i < sizeof silent / sizeof *silent; i++) {
+    snprintf(text, sizeof text, "%s" TETRAHEDRON, silent[i]);
+    expect_tetrahedron(text);
+  }
+  for (size_t i = 0; i < sizeof told / sizeof *told; i++) {
+    snprintf(text, sizeof text, "%s" TETRAHEDRON, told[i]);
+    vxm_soup *soup = read_text(text, "x.off");
+    expect_counts(soup, 4, 4);
+    expect_vertex(soup, 0, 0.0, 0.0, 0.0);
+    expect_vertex(soup, 1, 1.0, 0.0, 0.0);
+    expect_note(soup, "line 2: more than three counts; the rest of the line is passed over");
+    vxm_soup_destroy(soup);
+  }
+  text_fails("OFF\n3 1 0 99\n0 0 0 1 0 0 0 1 0\n3 0 1 2\n", "x.off",
+             "x.off:2: more than three counts, and what follows them is no vertex");
+}
+
 static void test_missing_word(void **state) {
   (void)state;
   vxm_soup *soup = read_text("4 4 6\n" TETRAHEDRON, "x.off");
@@ -335,10 +360,11 @@ static void test_binary(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_headers),      cmocka_unit_test(test_missing_word),
-                                     cmocka_unit_test(test_prefixes),     cmocka_unit_test(test_dimensions),
-                                     cmocka_unit_test(test_colours),      cmocka_unit_test(test_broken_lines),
-                                     cmocka_unit_test(test_damage),       cmocka_unit_test(test_failures),
-                                     cmocka_unit_test(test_random_files), cmocka_unit_test(test_binary)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_headers),      cmocka_unit_test(test_edge_counts),
+                                     cmocka_unit_test(test_missing_word), cmocka_unit_test(test_prefixes),
+                                     cmocka_unit_test(test_dimensions),   cmocka_unit_test(test_colours),
+                                     cmocka_unit_test(test_broken_lines), cmocka_unit_test(test_damage),
+                                     cmocka_unit_test(test_failures),     cmocka_unit_test(test_random_files),
+                                     cmocka_unit_test(test_binary)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

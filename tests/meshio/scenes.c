@@ -142,6 +142,178 @@ static void test_stool(void **state) {
   bytes_free(&b);
 }
 
+/* ---- Extensions of glTF ---- */
+
+/** A .glb of a text and a buffer. */
+static bytes glb(const char *json, const void *data, size_t size) {
+  bytes b = {0};
+  uint32_t length = (uint32_t)(strlen(json) + 3) / 4 * 4, rest = (uint32_t)(size + 3) / 4 * 4;
+  const uint32_t head[] = {2, 12 + 8 + length + 8 + rest, length};
+  bytes_add(&b, "glTF", 4);
+  bytes_add(&b, head, sizeof head);
+  bytes_text(&b, "JSON%s%*s", json, (int)(length - strlen(json)), "");
+  bytes_add(&b, &rest, sizeof rest);
+  bytes_add(&b, "BIN\0", 4);
+  bytes_add(&b, data, size);
+  bytes_add(&b, "\0\0\0", rest - size);
+  return b;
+}
+
+/** A wedge of 4 vertices with `numbers` of a kind for positions, 8 bytes for each vertex, then its indices.
+ */
+static bytes quantized(int kind, bool is_normalized, const int64_t numbers[12], const char *more) {
+  static const uint16_t faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  unsigned char data[4 * 8 + sizeof faces] = {0};
+  char json[1600];
+  for (int v = 0; v < 4; v++)
+    for (int c = 0; c < 3; c++)
+      if (kind < 5122)
+        data[8 * v + c] = (unsigned char)numbers[3 * v + c];
+      else
+        memcpy(data + 8 * v + 2 * c, (uint16_t[]){(uint16_t)numbers[3 * v + c]}, 2);
+  memcpy(data + 4 * 8, faces, sizeof faces);
+  snprintf(
+      json, sizeof json,
+      "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0%s}],"
+      "\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+      "\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":%d,\"count\":4,"
+      "\"type\":\"VEC3\",\"normalized\":%s},{\"bufferView\":1,\"componentType\":5123,\"count\":12,"
+      "\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":32,\"byteStride\":8},"
+      "{\"buffer\":0,\"byteOffset\":32,\"byteLength\":24}],\"buffers\":[{\"byteLength\":56}]}",
+      more, kind, is_normalized ? "true" : "false");
+  return glb(json, data, sizeof data);
+}
+
+/** What the numbers of each kind stand for (glTF 2.0, 3.6.2.2, and KHR_mesh_quantization). */
+static void test_quantized(void **state) {
+  (void)state;
+  static const struct {
+    int kind;
+    int64_t least, most;
+  } kinds[] = {{5120, -128, 127}, {5121, 0, 255}, {5122, -32768, 32767}, {5123, 0, 65535}};
+  if (!has_module("assimp"))
+    skip();
+  for (int k = 0; k < 4; k++)
+    for (int n = 0; n < 2; n++) {
+      int64_t least = kinds[k].least, most = kinds[k].most;
+      const int64_t numbers[12] = {least, 0, 1, most, 100, 3, 17, most, most / 2, 5, least, most};
+      bytes b = quantized(kinds[k].kind, n, numbers, "");
+      vxm_soup *soup = read_data(b.data, b.size, "a.glb");
+      expect_counts(soup, 4, 4);
+      expect_no_notes(soup);
+      for (size_t i = 0; i < 12; i++) {
+        double whole = (double)numbers[i], wanted = n ? fmax(whole / (double)most, -1) : whole;
+        assert_true(soup->positions[i] == (double)(float)wanted);
+      }
+      vxm_soup_destroy(soup);
+      bytes_free(&b);
+    }
+}
+
+/** The transforms of nodes bring the numbers to size; bones, which may do it too, are told of. */
+static void test_quantized_scale(void **state) {
+  (void)state;
+  static const double bounds[6] = {1, 0, 0, 2, 1, 1};
+  static const int64_t numbers[12] = {0, 0, 0, 100, 0, 0, 0, 100, 0, 0, 0, 100};
+  if (!has_module("assimp"))
+    skip();
+  bytes b = quantized(5122, false, numbers, ",\"scale\":[0.01,0.01,0.01],\"translation\":[1,0,0]");
+  vxm_soup *soup = read_data(b.data, b.size, "a.glb");
+  expect_body(soup, bounds, 1.0 / 6, 1e-6);
+  vxm_soup_destroy(soup);
+  bytes_free(&b);
+  b = quantized(5122, false, numbers, ",\"skin\":0");
+  soup = read_data(b.data, b.size, "a.glb");
+  expect_note(soup, "meshes with bones have positions in whole numbers");
+  vxm_soup_destroy(soup);
+  bytes_free(&b);
+}
+
+/** Changes a text of a file in place; both have the same length. */
+static void replace(bytes *b, const char *from, const char *to) {
+  unsigned char *at = memmem(b->data, b->size, from, strlen(from));
+  assert_non_null(at);
+  assert_int_equal(strlen(from), strlen(to));
+  memcpy(at, to, strlen(to));
+}
+
+/** Accessors that reach beyond what is there, or cannot be read for another reason. */
+static void test_quantized_damage(void **state) {
+  (void)state;
+  static const int64_t numbers[12] = {0, 0, 0, 100, 0, 0, 0, 100, 0, 0, 0, 100};
+  static const struct {
+    const char *from, *to, *told;
+  } cases[] = {
+      {"\"byteLength\":32", "\"byteLength\":29", "it reaches beyond its buffer"},
+      {"\"byteLength\":32", "\"byteLength\":99", "its buffer is not there, or cut off"},
+      {"\"buffer\":0", "\"buffer\":7", "its buffer is not there, or cut off"},
+      {"\"count\":4", "\"count\":5", "it reaches beyond its buffer"},
+      {"\"count\":4", "\"cound\":4", NULL},
+      {"\"byteStride\":8", "\"byteStride\":9", "it reaches beyond its buffer"},
+      {"5122", "5125", "its numbers have neither 8 nor 16 bits"},
+      {"\"VEC3\"", "\"VEC9\"", "it is damaged"},
+      {"\"normalized\":false", "\"sparse\":{\"a\":333}", "it is sparse"},
+      {"\"bufferView\":0", "\"bufferView\":9", "its buffer is not there, or cut off"},
+      {"\"bufferView\":0", "\"bufferVieW\":0", "it is damaged"},
+      {"{\"asset\"", "[\"asset\"", "its JSON is damaged: line 1"},
+      {"BIN", "BIX", NULL},
+  };
+  if (!has_module("assimp"))
+    skip();
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    bytes b = quantized(5122, false, numbers, "");
+    replace(&b, cases[i].from, cases[i].to);
+    if (cases[i].told)
+      read_fails(b.data, b.size, "a.glb", VXM_ERROR_FORMAT, cases[i].told);
+    else
+      survives(&b, "a.glb");
+    bytes_free(&b);
+  }
+  bytes whole = quantized(5122, true, numbers, "");
+  damage_many(&whole, "a.glb", 80 / SLOWER);
+  char told[64];
+  snprintf(told, sizeof told, "a.glb: the file is cut off: 500 of %zu bytes are there", whole.size);
+  read_fails(whole.data, 500, "a.glb", VXM_ERROR_FORMAT, told);
+  bytes_free(&whole);
+}
+
+/** What a file says that it cannot be read right without. */
+static void test_required(void **state) {
+  (void)state;
+  static const char *const harmless[] = {"KHR_materials_unlit", "KHR_texture_transform", "KHR_texture_basisu",
+                                         "KHR_lights_punctual", "EXT_texture_webp"};
+  static const struct {
+    const char *name, *advice;
+  } refused[] = {{"EXT_meshopt_compression", "unpack it with 'gltf-transform copy IN OUT.glb'"},
+                 {"EXT_mesh_gpu_instancing", "export it with a node for each instance"},
+                 {"KHR_texture", "export it without"},
+                 {"CESIUM_RTC", "export it without"},
+                 {"XX_unknown", "export it without"}};
+  char nodes[200], told[200];
+  if (!has_module("assimp"))
+    skip();
+  for (size_t i = 0; i < 5; i++) {
+    snprintf(nodes, sizeof nodes, "{\"mesh\":0}],\"extensionsRequired\":[\"%s\"", harmless[i]);
+    vxm_soup *soup = read_gltf(nodes, TRIANGLES);
+    expect_counts(soup, 4, 4);
+    vxm_soup_destroy(soup);
+  }
+  for (size_t i = 0; i < 5; i++) {
+    snprintf(nodes, sizeof nodes, "{\"mesh\":0}],\"extensionsRequired\":[\"KHR_materials_unlit\",\"%s\"",
+             refused[i].name);
+    snprintf(told, sizeof told, "a.gltf: it needs the glTF extension %s, which is not read: %s",
+             refused[i].name, refused[i].advice);
+    bytes b = gltf(nodes, TRIANGLES);
+    read_fails(b.data, b.size, "a.gltf", VXM_ERROR_FORMAT, told);
+    bytes_free(&b);
+  }
+  /* Instances would be lost, also where the file does not call them required. */
+  bytes b = gltf("{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{}}}", TRIANGLES);
+  read_fails(b.data, b.size, "a.gltf", VXM_ERROR_FORMAT,
+             "it needs the glTF extension EXT_mesh_gpu_instancing");
+  bytes_free(&b);
+}
+
 /* ---- Other formats ---- */
 
 /** An archive of one file that is not packed (PKWARE's application note, 4.3). */
@@ -174,20 +346,22 @@ static void zip_add(bytes *archive, bytes *directory, int *count, const char *na
 }
 
 /** A wedge, and a pair of it; placed twice. */
-static bytes three_mf(void) {
-  static const char model[] =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?><model unit=\"millimeter\" "
-      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object id=\"1\" "
-      "type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" "
-      "z=\"0\"/><vertex "
-      "x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" "
-      "v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" "
-      "v3=\"3\"/><triangle "
-      "v1=\"2\" v2=\"0\" v3=\"3\"/></triangles></mesh></object><object id=\"2\" type=\"model\"><components>"
-      "<component objectid=\"1\"/><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 "
-      "0\"/></components>"
-      "</object></resources><build><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 10 0\"/>"
-      "<item objectid=\"1\"/></build></model>";
+static const char three_mf_model[] =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?><model unit=\"millimeter\" "
+    "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object id=\"1\" "
+    "type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" "
+    "z=\"0\"/><vertex "
+    "x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" "
+    "v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" "
+    "v3=\"3\"/><triangle "
+    "v1=\"2\" v2=\"0\" v3=\"3\"/></triangles></mesh></object><object id=\"2\" type=\"model\"><components>"
+    "<component objectid=\"1\"/><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 "
+    "0\"/></components>"
+    "</object></resources><build><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 10 0\"/>"
+    "<item objectid=\"1\"/></build></model>";
+
+/** An archive of a model, and of another file that it may name. */
+static bytes three_mf_of(const char *model, const char *other) {
   static const char types[] =
       "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
       "<Default Extension=\"model\" "
@@ -202,6 +376,8 @@ static bytes three_mf(void) {
   zip_add(&archive, &directory, &count, "[Content_Types].xml", types);
   zip_add(&archive, &directory, &count, "_rels/.rels", relations);
   zip_add(&archive, &directory, &count, "3D/3dmodel.model", model);
+  if (other)
+    zip_add(&archive, &directory, &count, "3D/Objects/object_1.model", other);
   const uint16_t counts[] = {0, 0, (uint16_t)count, (uint16_t)count};
   const uint32_t place[] = {(uint32_t)directory.size, (uint32_t)archive.size};
   bytes_add(&archive, directory.data, directory.size);
@@ -211,6 +387,10 @@ static bytes three_mf(void) {
   bytes_add(&archive, "\0\0", 2);
   bytes_free(&directory);
   return archive;
+}
+
+static bytes three_mf(void) {
+  return three_mf_of(three_mf_model, NULL);
 }
 
 static void test_3mf(void **state) {
@@ -230,6 +410,55 @@ static void test_3mf(void **state) {
   }
   bytes_free(&b);
   read_fails("PK\3\4rubbish", 11, "a.zip", VXM_ERROR_FORMAT, "is a zip archive: unpack it first");
+}
+
+/** Extensions of 3MF. `head` are attributes of the model, `item` is one of an item. */
+static bytes three_mf_with(const char *head, const char *item, const char *other) {
+  char model[2000];
+  const char *before = strstr(three_mf_model, "xmlns="),
+             *last = strstr(three_mf_model, "<item objectid=\"1\"");
+  snprintf(model, sizeof model, "%.*s%s %.*s<item %s%s", (int)(before - three_mf_model), three_mf_model, head,
+           (int)(last - before), before, item, last + strlen("<item"));
+  return three_mf_of(model, other);
+}
+
+#define PRODUCTION "xmlns:p='http://schemas.microsoft.com/3dmanufacturing/production/2015/06'"
+#define BEAMS "xmlns:b = \"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\""
+#define MATERIAL "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\""
+
+static void test_3mf_extensions(void **state) {
+  (void)state;
+  static const struct {
+    const char *head, *item, *told;
+  } cases[] = {
+      {PRODUCTION " requiredextensions=\"p\"", "p:UUID=\"3\"", NULL},
+      {PRODUCTION " requiredextensions=\"p\"", "p:path=\"/3D/Objects/object_1.model\"",
+       "a.3mf: its objects lie in files of their own within it (the 3MF production extension"},
+      {PRODUCTION, "p:UUID='3' p:path = '/3D/Objects/object_1.model'", "the 3MF production extension"},
+      {PRODUCTION, "", NULL},
+      {PRODUCTION, "q:path=\"/a\"", NULL},
+      {MATERIAL " requiredextensions=\"m\"", "", NULL},
+      {BEAMS, "", NULL},
+      {BEAMS " " MATERIAL " requiredextensions=\"m b\"", "",
+       "a.3mf: it needs the 3MF extension http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02, "
+       "which "
+       "is not read: export it without, or as .stl or .obj"},
+      {BEAMS " requiredextensions=\"bb\"", "", NULL},
+  };
+  if (!has_module("assimp"))
+    skip();
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    bytes b = three_mf_with(cases[i].head, cases[i].item, three_mf_model);
+    if (cases[i].told)
+      read_fails(b.data, b.size, "a.3mf", VXM_ERROR_FORMAT, cases[i].told);
+    else {
+      vxm_soup *soup = read_data(b.data, b.size, "a.3mf");
+      expect_counts(soup, 12, 12);
+      vxm_soup_destroy(soup);
+    }
+    damage_many(&b, "a.3mf", 4);
+    bytes_free(&b);
+  }
 }
 
 #define COLLADA_HEAD                                                                          \
@@ -357,8 +586,9 @@ static void test_damage(void **state) {
   bytes_free(&zip);
   bytes_free(&text);
   bytes_free(&dae);
-  text_fails("{\"asset\":{\"version\":\"2.0\"}", "a.gltf", "a.gltf: Assimp cannot read it: ");
-  text_fails("glTF\2", "a.dat", "a.dat: Assimp cannot read it: ");
+  text_fails("{\"asset\":{\"version\":\"2.0\"}", "a.gltf",
+             "a.gltf: Assimp cannot read it: it is likely cut off or damaged, or no .gltf file");
+  text_fails("glTF\2", "a.dat", "a.dat: the file is cut off: 5 of 20 bytes are there");
   text_fails("what is this", "a.fbx", "a.fbx: Assimp cannot read it: ");
   text_fails("what is this", "a.lws", "a.lws: this kind of scene imports other files, and is not read");
   text_fails("what is this", "a.IRR", "a.IRR: this kind of scene imports other files, and is not read");
@@ -386,7 +616,12 @@ int main(void) {
                                      cmocka_unit_test(test_names),
                                      cmocka_unit_test(test_lines_and_points),
                                      cmocka_unit_test(test_stool),
+                                     cmocka_unit_test(test_quantized),
+                                     cmocka_unit_test(test_quantized_scale),
+                                     cmocka_unit_test(test_quantized_damage),
+                                     cmocka_unit_test(test_required),
                                      cmocka_unit_test(test_3mf),
+                                     cmocka_unit_test(test_3mf_extensions),
                                      cmocka_unit_test(test_collada),
                                      cmocka_unit_test(test_options),
                                      cmocka_unit_test(test_small_formats),

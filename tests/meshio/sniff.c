@@ -71,14 +71,18 @@ static void test_strangers(void **state) {
   (void)state;
   static const struct {
     const char *text, *part;
-  } cases[] = {{"\x1f\x8b\x08\x01", "gzip"},
-               {"PK\x03\x04xx", "zip"},
-               {"<!DOCTYPE html>\n", "web page"},
-               {"version https://git-lfs.github.com/spec/v1\n", "git lfs pull"},
-               {"#binvox 1\n", "binvox"},
-               {"what is this\n", "not a known mesh format: neither off, obj, stl nor ply"}};
+  } cases[] = {
+      {"\x1f\x8b\x08\x01", "gzip"},
+      {"PK\x03\x04xx", "zip"},
+      {"<!DOCTYPE html>\n", "web page"},
+      {"version https://git-lfs.github.com/spec/v1\n", "git lfs pull"},
+      {"#binvox 1\n", "binvox"},
+      {"what is this\n",
+       "a.dat: not a known mesh format by content or extension; what is read here: off obj stl ply"}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
     text_fails(cases[i].text, "dir/a.dat", cases[i].part);
+  /* A zip archive by content, which is no use to unpack. */
+  text_fails("PK\x03\x04xx", "a.usdz", "a.usdz: USD is not read: export it as .glb or .obj");
   text_fails("", "a.off", "a.off: the file is empty");
   text_fails("\xef\xbb\xbf", "a.off", "empty");
   text_fails("what is this\n", "a.obj", "not a mesh");

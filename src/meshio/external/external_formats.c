@@ -156,8 +156,8 @@ const vxm_external_format *vxm_external_format_by_name(const char *name) {
 
 const char *vxm_external_format_refusal(const char *extension) {
   /* Scenes that say which other files to put where. */
-  static const char *const importing[] = {"lws", "irr", "mot",  "scn", "pk3",
-                                          "bsp", "md3", "usda", "usd", NULL};
+  static const char *const importing[] = {"lws", "irr", "mot", "scn", "pk3", "bsp", "md3", NULL};
+  static const char *const usd[] = {"usd", "usda", "usdc", "usdz", NULL};
   /* Read by Assimp too, and by few others: their readers are not looked after. */
   static const char *const others[] = {"ase", "b3d",     "bvh",  "cob", "csm",     "dxf", "hmp",    "ifczip",
                                        "iqm", "irrmesh", "m3d",  "md2", "md5mesh", "mdc", "mdl",    "ms3d",
@@ -166,6 +166,9 @@ const char *vxm_external_format_refusal(const char *extension) {
   for (const char *const *e = importing; *e; e++)
     if (vxm_text_equal_nocase(extension, *e))
       return "this kind of scene imports other files, and is not read: export it as .glb or .obj";
+  for (const char *const *e = usd; *e; e++)
+    if (vxm_text_equal_nocase(extension, *e))
+      return "USD is not read: export it as .glb or .obj";
   for (const char *const *e = others; *e; e++)
     if (vxm_text_equal_nocase(extension, *e))
       return "this kind of file is not read: export it as .glb or .obj";

@@ -379,7 +379,7 @@ static vxm_status finish(vxm_tokenizer *scan, uint64_t vertices, uint64_t faces,
 static vxm_status read_text(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error) {
   uint64_t vertices = 0, faces = 0, done = 0;
   off_damage damage = {0};
-  vxm_status status = vxm_off_read_counts(scan, &vertices, &faces, error);
+  vxm_status status = vxm_off_read_counts(scan, header, &vertices, &faces, error);
   if (status == VXM_OK)
     status = check_vertex_count(scan, vertices, header->dimension, error);
   if (status == VXM_OK)

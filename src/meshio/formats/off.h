@@ -36,8 +36,10 @@ static inline bool vxm_off_skip_to_data(vxm_tokenizer *scan) {
 /** Reads the word, if there is one, and the number of dimensions; the cursor ends before the counts, or
  * behind the line of OFF BINARY. */
 vxm_status vxm_off_read_header(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error);
-/** Reads the counts of a text, also the one of edges, which says nothing and is often left out. */
-vxm_status vxm_off_read_counts(vxm_tokenizer *scan, uint64_t *vertices, uint64_t *faces, vxm_error *error);
+/** Reads the counts of a text. What follows them on their line is the number of edges, whatever it is; it
+ * says nothing and is often left out. */
+vxm_status vxm_off_read_counts(vxm_tokenizer *scan, const vxm_off_header *header, uint64_t *vertices,
+                               uint64_t *faces, vxm_error *error);
 /** Reads what follows the words OFF BINARY and their line end. */
 vxm_status vxm_off_read_binary(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error);
 

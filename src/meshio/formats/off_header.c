@@ -68,30 +68,56 @@ static vxm_status read_count(vxm_tokenizer *scan, const char *what, uint64_t *co
                      vxm_quote(quote, scan->at, vxm_token_length(scan)));
 }
 
-/** Skips the number of edges, which says nothing and is often left out. */
-static void skip_edge_count(vxm_tokenizer *scan, bool one_per_line) {
+/** Words behind the counts on their line. They are passed over where each vertex and each face has a line of
+ * its own further down; else they may be the first vertices of a file that keeps to no lines. */
+static vxm_status skip_surplus(vxm_tokenizer *scan, const vxm_off_header *header, uint64_t items,
+                               vxm_error *error) {
+  size_t words = vxm_tokens_on_line(scan, '#');
+  vxm_tokenizer behind = *scan;
+  if (words == 0)
+    return VXM_OK;
+  vxm_skip_line(&behind);
+  if (vxm_lines_with_data(&behind, '#', items) == items) {
+    vxm_warn(&scan->soup->warnings,
+             "line %" PRId64 ": more than three counts; the rest of the line is passed over",
+             vxm_tokenizer_line(scan, scan->at));
+    *scan = behind;
+  } else if (words < header->dimension)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->at),
+                       "more than three counts, and what follows them is no vertex");
+  return VXM_OK;
+}
+
+/** Skips the number of edges, which says nothing and is often left out, or no number at all. */
+static vxm_status skip_edge_count(vxm_tokenizer *scan, const vxm_off_header *header, bool one_per_line,
+                                  uint64_t items, vxm_error *error) {
   uint64_t edges;
   vxm_tokenizer ahead = *scan;
   vxm_skip_blanks(&ahead);
-  if (vxm_at_line_end(&ahead) || *ahead.at == '#') {
-    /* Where the other counts had a line each, this one may have too. */
-    if (!one_per_line || !vxm_off_skip_to_data(&ahead) || vxm_tokens_on_line(&ahead, '#') != 1)
-      return;
-  }
-  if (vxm_tokenizer_uint(&ahead, &edges))
+  if (!vxm_at_line_end(&ahead) && *ahead.at != '#') {
+    vxm_skip_token(&ahead);
     *scan = ahead;
+    return skip_surplus(scan, header, items, error);
+  }
+  /* Where the other counts had a line each, this one may have too. */
+  if (one_per_line && vxm_off_skip_to_data(&ahead) && vxm_tokens_on_line(&ahead, '#') == 1 &&
+      vxm_tokenizer_uint(&ahead, &edges))
+    *scan = ahead;
+  return VXM_OK;
 }
 
-vxm_status vxm_off_read_counts(vxm_tokenizer *scan, uint64_t *vertices, uint64_t *faces, vxm_error *error) {
+vxm_status vxm_off_read_counts(vxm_tokenizer *scan, const vxm_off_header *header, uint64_t *vertices,
+                               uint64_t *faces, vxm_error *error) {
   vxm_status status = read_count(scan, "vertices", vertices, error);
   if (status != VXM_OK)
     return status;
   vxm_skip_blanks(scan);
   bool one_per_line = vxm_at_line_end(scan);
   status = read_count(scan, "faces", faces, error);
-  if (status == VXM_OK)
-    skip_edge_count(scan, one_per_line);
-  return status;
+  if (status != VXM_OK)
+    return status;
+  uint64_t items = *vertices + *faces;
+  return skip_edge_count(scan, header, one_per_line, items < *faces ? UINT64_MAX : items, error);
 }
 
 vxm_status vxm_off_read_header(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error) {

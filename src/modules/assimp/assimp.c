@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The module voxmend-assimp.so: glTF, 3MF, COLLADA, FBX, 3DS and the rest through Assimp's C functions. */
 #include "modules/assimp/assimp.h"
+#include "modules/assimp/three_mf.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -19,9 +20,13 @@ static void last_message(char *text, size_t size) {
       *c = ' ';
 }
 
-static vxm_status fail_import(const char *name, vxm_error *error) {
+/** The name that Assimp knows is none of the user's, and messages with it tell no more than that it is not as
+ * it should be. */
+static vxm_status fail_import(const char *name, const char *path, vxm_error *error) {
   char message[300];
   last_message(message, sizeof message);
+  if (strstr(message, path))
+    snprintf(message, sizeof message, "it is likely cut off or damaged, or no %s file", strrchr(path, '.'));
   if (strstr(message, "bad_alloc"))
     return vxm_fail_at(error, VXM_ERROR_MEMORY, (vxm_place){name, 0, -1, -1}, "not enough memory to read it");
   return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1}, "Assimp cannot read it: %s",
@@ -45,19 +50,23 @@ static void make_path(char *path, size_t size, const vxm_reader_request *request
   snprintf(path, size, "voxmend-mesh.%s", request->hint);
 }
 
+static bool is_gltf(const vxm_reader_request *request) {
+  return strcmp(request->hint, "gltf") == 0 || strcmp(request->hint, "glb") == 0;
+}
+
 static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, const char *path,
-                         vxm_error *error) {
+                         const vxm_gltf *gltf, vxm_error *error) {
   vxm_assimp_files files;
-  vxm_assimp_files_init(&files, request, soup->context, path);
+  vxm_assimp_files_init(&files, request, soup->context, path, gltf);
   struct aiPropertyStore *properties = make_properties();
   if (!properties)
     return vxm_fail(error, VXM_ERROR_MEMORY, "not enough memory to read the file");
   const struct aiScene *scene = aiImportFileExWithProperties(path, 0, &files.io, properties);
   aiReleasePropertyStore(properties);
   if (!scene)
-    return fail_import(request->name, error);
+    return fail_import(request->name, path, error);
   if (soup->appearance)
-    soup->appearance->is_product = strcmp(request->hint, "gltf") == 0 || strcmp(request->hint, "glb") == 0;
+    soup->appearance->is_product = is_gltf(request);
   vxm_status status = vxm_assimp_flatten(soup, scene, error);
   aiReleaseImport(scene);
   return status;
@@ -70,12 +79,22 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
     return vxm_fail_at(error, VXM_ERROR_UNAVAILABLE, (vxm_place){request->name, 0, -1, -1},
                        "this build of Assimp does not read %s files", extension);
   make_path(path, sizeof path, request);
-  return import(soup, request, path, error);
+  vxm_gltf gltf = {0};
+  vxm_status status = VXM_OK;
+  if (is_gltf(request))
+    status = vxm_gltf_prepare(&gltf, request, soup->context, &soup->warnings, error);
+  if (strcmp(request->hint, "3mf") == 0)
+    status = vxm_three_mf_check(request, soup->context, error);
+  if (status == VXM_OK)
+    status = import(soup, request, path, is_gltf(request) ? &gltf : NULL, error);
+  vxm_gltf_free(&gltf, soup->context);
+  return status;
 }
 
 /** The first question makes all importers; nothing is loaded later. */
 static void prepare(void) {
   aiIsExtensionSupported(".glb");
+  vxm_gltf_start();
 }
 
 static const vxm_reader reader = {prepare, read_scene, NULL};

@@ -6,6 +6,7 @@
 #include <assimp/cfileio.h>
 #include <assimp/scene.h>
 
+#include "modules/assimp/gltf.h"
 #include "sandbox/reader.h"
 
 /** The file in memory and those that it refers to, as Assimp sees them. */
@@ -13,11 +14,12 @@ typedef struct vxm_assimp_files {
   struct aiFileIO io;
   const vxm_reader_request *request;
   vxm_context *context;
-  const char *path; /**< name under which Assimp asks for the file in memory */
+  const char *path;     /**< name under which Assimp asks for the file in memory */
+  const vxm_gltf *gltf; /**< what takes its place if it is glTF; else NULL */
 } vxm_assimp_files;
 
 void vxm_assimp_files_init(vxm_assimp_files *files, const vxm_reader_request *request, vxm_context *context,
-                           const char *path);
+                           const char *path, const vxm_gltf *gltf);
 
 /* For a soup that is to have an appearance. */
 

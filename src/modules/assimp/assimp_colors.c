@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "modules/assimp/assimp.h"
+#include "modules/assimp/uri.h"
 
 /* ---- Pictures ---- */
 
@@ -50,18 +51,11 @@ static const struct aiTexture *find_embedded(const struct aiScene *scene, const 
   return NULL;
 }
 
-/** Names in URIs write blanks and others as %20; the file is looked for as it is called. */
-static void decode_uri(char *name) {
-  char *out = name;
-  for (const char *c = name; *c; c++, out++) {
-    char digits[3] = {c[0] == '%' ? c[1] : '\0', c[0] == '%' && c[1] ? c[2] : '\0', '\0'};
-    char *end;
-    long value = strtol(digits, &end, 16);
-    bool is_code = end == digits + 2 && value > 0;
-    *out = is_code ? (char)value : *c == '\\' ? '/' : *c;
-    c += is_code ? 2 : 0;
-  }
-  *out = '\0';
+/** Names are URIs, and those of other systems; the file is looked for as it is called. */
+static void decode_name(char *name) {
+  for (char *c = name; *c; c++)
+    *c = *c == '\\' ? '/' : *c;
+  vxm_uri_decode(name);
 }
 
 static vxm_status take_texture(vxm_appearance *look, const struct aiScene *scene, const char *path,
@@ -73,7 +67,7 @@ static vxm_status take_texture(vxm_appearance *look, const struct aiScene *scene
   else
     snprintf(name, sizeof name, "%.*s", VXM_LOOK_NAME - 1, path);
   if (!texture)
-    decode_uri(name);
+    decode_name(name);
   size_t known = look->image_count;
   vxm_status status = vxm_appearance_image(look, name, strlen(name), image, error);
   bool is_new = look->image_count > known;
@@ -95,13 +89,13 @@ static vxm_status take_material(vxm_appearance *look, const struct aiScene *scen
   struct aiString name = {.length = 0}, path = {.length = 0};
   uint32_t index, image;
   aiGetMaterialString(from, AI_MATKEY_NAME, &name);
-  vxm_status status = vxm_appearance_add_material(look, name.data, strlen(name.data), &index, error);
-  if (status != VXM_OK)
+  bool is_made_up = strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0; /* where the file has none */
+  vxm_status status =
+      vxm_appearance_add_material(look, name.data, is_made_up ? 0 : strlen(name.data), &index, error);
+  if (status != VXM_OK || is_made_up)
     return status;
   vxm_material *material = &look->materials[index];
   struct aiColor4D color;
-  if (strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0) /* Assimp's own, where the file has none */
-    return VXM_OK;
   /* Assimp gives the base colour of glTF under this name too. */
   if (aiGetMaterialColor(from, AI_MATKEY_COLOR_DIFFUSE, &color) == aiReturn_SUCCESS) {
     const double rgb[3] = {(double)color.r, (double)color.g, (double)color.b};

@@ -4,6 +4,7 @@
 
 #include "base/context.h"
 #include "modules/assimp/assimp.h"
+#include "modules/assimp/uri.h"
 
 /** An open file. */
 typedef struct open_file {
@@ -66,10 +67,41 @@ static void flush_file(struct aiFile *file) {
 
 /* ---- The files ---- */
 
+/** What is in memory: the file, or what stands for it, and the buffer that was made of it. */
+static bool find_here(open_file *f, const vxm_assimp_files *files, const char *path) {
+  const vxm_gltf *gltf = files->gltf;
+  if (strcmp(path, files->path) == 0) {
+    f->data = gltf && gltf->data ? gltf->data : files->request->data;
+    f->size = gltf && gltf->data ? gltf->size : files->request->size;
+    return true;
+  }
+  const char *slash = strrchr(path, '/');
+  if (!gltf || !gltf->floats || strcmp(slash ? slash + 1 : path, VXM_GLTF_FLOATS) != 0)
+    return false;
+  f->data = gltf->floats;
+  f->size = gltf->floats_size;
+  return true;
+}
+
+/** The name of another file, in its own block: in glTF it is a URI, which Assimp hands on as it stands. */
+static char *name_of(const vxm_assimp_files *files, const char *path) {
+  size_t size = strlen(path) + 1;
+  char *name = vxm_alloc(files->context, size, 1, NULL);
+  if (name) {
+    memcpy(name, path, size);
+    if (files->gltf)
+      vxm_uri_decode(name);
+  }
+  return name;
+}
+
 static bool fetch(open_file *f, const vxm_assimp_files *files, const char *path) {
   const vxm_reader_request *request = files->request;
   vxm_reader_file file;
-  if (!request->fetch || !request->fetch(request->payload, files->context, path, &file))
+  char *name = name_of(files, path);
+  bool is_there = name && request->fetch && request->fetch(request->payload, files->context, name, &file);
+  vxm_free(files->context, name);
+  if (!is_there)
     return false;
   f->data = f->fetched = file.data;
   f->size = file.size;
@@ -78,16 +110,13 @@ static bool fetch(open_file *f, const vxm_assimp_files *files, const char *path)
 
 static struct aiFile *open_any(struct aiFileIO *io, const char *path, const char *mode) {
   vxm_assimp_files *files = (vxm_assimp_files *)(void *)io->UserData;
-  bool is_main = strcmp(path, files->path) == 0;
   if (strpbrk(mode, "wa+"))
     return NULL;
   open_file *f = vxm_calloc(files->context, 1, sizeof *f, NULL);
   if (!f)
     return NULL;
   f->file = (struct aiFile){read_file, write_file, tell_file, size_file, seek_file, flush_file, NULL};
-  f->data = files->request->data;
-  f->size = files->request->size;
-  if (!is_main && !fetch(f, files, path)) {
+  if (!find_here(f, files, path) && !fetch(f, files, path)) {
     vxm_free(files->context, f);
     return NULL;
   }
@@ -102,7 +131,10 @@ static void close_any(struct aiFileIO *io, struct aiFile *file) {
 }
 
 void vxm_assimp_files_init(vxm_assimp_files *files, const vxm_reader_request *request, vxm_context *context,
-                           const char *path) {
-  *files = (vxm_assimp_files){
-      .io = {open_any, close_any, (char *)files}, .request = request, .context = context, .path = path};
+                           const char *path, const vxm_gltf *gltf) {
+  *files = (vxm_assimp_files){.io = {open_any, close_any, (char *)files},
+                              .request = request,
+                              .context = context,
+                              .path = path,
+                              .gltf = gltf};
 }

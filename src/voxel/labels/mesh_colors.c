@@ -30,8 +30,8 @@ vxm_status vxm_mesh_colors_check(const vxm_soup *mesh, vxm_error *error) {
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "the mesh has no colours: %s", look->library_failure);
   if (look->material_count > 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "the mesh has no colours: nothing is known of its material %.100s",
-                    look->materials[0].name);
+                    "the mesh has no colours: nothing is known of its material%s%.100s",
+                    look->materials[0].name[0] ? " " : ", which has no name", look->materials[0].name);
   return vxm_fail(error, VXM_ERROR_ARGUMENT,
                   "the mesh has no colours: neither its vertices and faces nor materials give any");
 }

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** 3MF: what Assimp passes over without a word is refused. */
+#ifndef VXM_MODULES_ASSIMP_THREE_MF_H
+#define VXM_MODULES_ASSIMP_THREE_MF_H
+
+#include "sandbox/reader.h"
+
+/**
+ * Looks at the models of an archive: whether objects lie in files of their own (the production extension),
+ * which Assimp looks for in the main file, and whether an extension is required that makes another shape.
+ *
+ * @return VXM_OK, also for what is damaged; VXM_ERROR_FORMAT; VXM_ERROR_MEMORY
+ */
+vxm_status vxm_three_mf_check(const vxm_reader_request *request, vxm_context *context, vxm_error *error);
+
+#endif

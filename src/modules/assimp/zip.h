@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What lies in a zip archive in memory, to look at (PKWARE's application note, 4.3). Archives beyond 4 GiB
+ * are passed over. */
+#ifndef VXM_MODULES_ASSIMP_ZIP_H
+#define VXM_MODULES_ASSIMP_ZIP_H
+
+#include "base/context.h"
+
+/** A file within; the name has no end mark. */
+typedef struct vxm_zip_member {
+  const char *name;
+  size_t name_size;
+  const unsigned char *data; /**< as it is packed */
+  size_t size;
+  unsigned method; /**< 0 is not packed, 8 is deflate */
+} vxm_zip_member;
+
+/** Where the directory is read next. Start from vxm_zip_open. */
+typedef struct vxm_zip {
+  const unsigned char *data, *at, *end;
+} vxm_zip;
+
+/** False if there is no directory at the end. */
+bool vxm_zip_open(vxm_zip *zip, const unsigned char *data, size_t size);
+/** False behind the last one, or where the directory is damaged. */
+bool vxm_zip_next(vxm_zip *zip, vxm_zip_member *out);
+
+/** Looks at some bytes of a file, which come in their order; false ends it. */
+typedef bool (*vxm_zip_look)(void *payload, const char *bytes, size_t size);
+
+/** Unpacks a file piece by piece. False if it cannot be unpacked, as this build has no zlib. */
+bool vxm_zip_unpack(const vxm_zip_member *member, vxm_context *context, vxm_zip_look look, void *payload);
+
+#endif
