@@ -247,7 +247,8 @@ class VoxelizeReport(Record):
         voxels, hash: as `VoxelGrid.filled_count` and `VoxelGrid.hash`.
         empty_parts, outside_parts: that set no voxel, within the grid or because they lie outside of it.
         thin_voxels: added because parts are thinner than one; thin_share: of the surface that needed them, 0 to 1.
-        self_overlapping_parts: that run through themselves, and are filled where parity would leave them hollow.
+        self_overlapping_parts: that run through themselves, and are filled where parity would leave them hollow;
+            hollow_overlaps: that seem to, but are left hollow, as their faces are wound against each other.
         components: pieces that share vertices, of which the parts are made; those that stay open are one part together.
         fill_ms, write_ms: of what is written to a file.
         engine: what made the voxels, such as "cpu" or "opencl:0"; engine_note: why it was taken in place of another.
@@ -270,6 +271,7 @@ class VoxelizeReport(Record):
     thin_share: float = 0.0
     components: int = 0
     self_overlapping_parts: int = 0
+    hollow_overlaps: int = 0
     engine: str = ""
     engine_note: str = ""
 

@@ -153,9 +153,18 @@ static void join(builder *b, size_t p, size_t q) {
 
 /** Two ends that could be joined, and how well they go together. */
 typedef struct candidate {
-  double cosine; /**< of the angle between the edges; less 2 within one fan, so that such pairs come last */
+  int faults;
+  double cosine; /**< of the angle between the edges */
   uint32_t p, q; /**< places among the ends of the vertex, p < q */
 } candidate;
+
+/** What speaks against a pair: that the faces do not run along both edges one way, so that no cap could be
+ * wound as they are; and, more than that, that both belong to one fan. */
+enum { TURNS = 1, OWN_FAN = 2 };
+
+/** Edges whose angle has a greater cosine lie along each other, as at a slit between panels. These go
+ * together though each was wound its own way. */
+static const double ALONG = 0.999;
 
 typedef struct keyed {
   double key;
@@ -174,6 +183,8 @@ typedef struct joining {
 
 static int better_first(const void *a, const void *b) {
   const candidate *p = a, *q = b;
+  if (p->faults != q->faults)
+    return p->faults < q->faults ? -1 : 1;
   if (p->cosine != q->cosine)
     return p->cosine > q->cosine ? -1 : 1;
   if (p->p != q->p)
@@ -193,13 +204,20 @@ static vxm_vec3 direction_of(const builder *b, size_t end) {
                           vxm_position(b->soup, end_vertex(b, end)), 1);
 }
 
+/** Whether most faces of an edge run along it away from the vertex of this end. */
+static bool leaves(const builder *b, size_t end) {
+  const vxm_edge *edge = &b->edges->edges[b->odd[end / 2]];
+  return (2 * edge->forward > edge->count) == (end % 2 == 0);
+}
+
 static void add_candidate(const builder *b, joining *j, uint32_t p, uint32_t q) {
   vxm_vec3 u = direction_of(b, j->ends[p]), v = direction_of(b, j->ends[q]);
   double cosine = vxm_vec3_dot(u, v) / (vxm_vec3_length(u) * vxm_vec3_length(v));
   if (!(cosine >= -1 && cosine <= 1)) /* also where lengths overflow or vanish */
     cosine = cosine > 1 ? 1 : -1;
-  double penalty = j->fans[p] == j->fans[q] ? 2 : 0;
-  j->candidates[j->candidate_count++] = (candidate){cosine - penalty, p < q ? p : q, p < q ? q : p};
+  bool turns = cosine < ALONG && leaves(b, j->ends[p]) == leaves(b, j->ends[q]);
+  int faults = (turns ? TURNS : 0) + (j->fans[p] == j->fans[q] ? OWN_FAN : 0);
+  j->candidates[j->candidate_count++] = (candidate){faults, cosine, p < q ? p : q, p < q ? q : p};
 }
 
 static void add_all_candidates(const builder *b, joining *j) {
@@ -234,7 +252,7 @@ static void join_rest(builder *b, joining *j) {
     join(b, j->ends[j->sorted[i].place], j->ends[j->sorted[i + rest / 2].place]);
 }
 
-static void join_by_angle(builder *b, joining *j) {
+static void join_best(builder *b, joining *j) {
   j->candidate_count = 0;
   for (size_t p = 0; p < j->count; p++) {
     j->fans[p] = fan_of(b, find_side(b, end_vertex(b, j->ends[p]), far_vertex(b, j->ends[p])));
@@ -269,7 +287,7 @@ static void join_all(builder *b, joining *j) {
     j->ends = b->ends + b->first_end[v];
     j->count = b->first_end[v + 1] - b->first_end[v];
     if (j->count > 2)
-      join_by_angle(b, j);
+      join_best(b, j);
     else if (j->count == 2)
       join(b, j->ends[0], j->ends[1]);
   }

@@ -18,7 +18,9 @@ extern "C" {
  * always close. Where a vertex has more than two, the rim of a hole leads from the end of one fan of faces to
  * the beginning of the next, never back along its own fan: odd edges of different fans are joined, the
  * smallest angle first. So the slits along T-junctions become loops of their own, and panels that share
- * corners are not taken for holes.
+ * corners are not taken for holes. But edges that do not lie along each other are joined only if the faces
+ * run along both one way, as they do around the hole that a face has left, where there are such: then what
+ * closes the loop can be wound as the faces are.
  */
 typedef struct vxm_boundary_loops {
   vxm_context *context;

@@ -153,6 +153,54 @@ static void holes_that_touch(void **state) {
   vxm_context_destroy(context);
 }
 
+/** Whether the faces run along all edges of a loop one way, as they do around what was taken out of them. */
+static bool runs_one_way(const found *f, size_t loop) {
+  size_t forward = 0, length = length_of(f, loop);
+  for (size_t s = f->loops.begin[loop]; s < f->loops.begin[loop + 1]; s++) {
+    const vxm_edge *edge = &f->edges.edges[f->loops.edge[s]];
+    forward += (edge->a == f->loops.vertex[s]) == (2 * edge->forward > edge->count);
+  }
+  return forward == 0 || forward == length;
+}
+
+/** Triangles taken out of a bumpy torus at random: however their holes touch, each rim can be closed by what
+ * is wound as the torus is. */
+static void rims_run_one_way(void **state) {
+  (void)state;
+  enum { N = 24, M = 12 };
+  vxm_context *context = context_of_threads(1);
+  vxm_rng rng = {5};
+  size_t crossings = 0;
+  for (int round = 0; round < 40; round++) {
+    vxm_soup *soup = new_soup(context);
+    for (int i = 0; i < N; i++)
+      for (int j = 0; j < M; j++) {
+        double u = 6.283185307179586 * i / N, v = 6.283185307179586 * j / M, r = 1 + vxm_rng_unit(&rng);
+        add_vertex(soup, (5 + r * cos(v)) * cos(u), (5 + r * cos(v)) * sin(u), r * sin(v));
+      }
+    double removed = 0.6 * vxm_rng_unit(&rng);
+    for (uint32_t i = 0; i < N; i++)
+      for (uint32_t j = 0; j < M; j++) {
+        uint32_t a = i * M + j, b = (i + 1) % N * M + j, c = (i + 1) % N * M + (j + 1) % M,
+                 d = i * M + (j + 1) % M;
+        if (vxm_rng_unit(&rng) >= removed)
+          add_triangle(soup, a, b, c);
+        if (vxm_rng_unit(&rng) >= removed)
+          add_triangle(soup, a, c, d);
+      }
+    found f = find_loops(soup);
+    uint32_t odd[N * M] = {0};
+    for (size_t s = 0; s < f.loops.begin[f.loops.count]; s++)
+      crossings += odd[f.loops.vertex[s]]++ == 1;
+    for (size_t l = 0; l < f.loops.count; l++)
+      assert_true(runs_one_way(&f, l));
+    found_free(&f);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(crossings > 1000);
+  vxm_context_destroy(context);
+}
+
 static void random_soups(void **state) {
   (void)state;
   vxm_context *context = context_of_threads(1);
@@ -281,13 +329,10 @@ static void memory_may_run_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(closed_soups_have_none),
-      cmocka_unit_test(a_sheet_has_one),
-      cmocka_unit_test(slits_along_panels),
-      cmocka_unit_test(holes_that_touch),
-      cmocka_unit_test(random_soups),
-      cmocka_unit_test(fans_of_many_edges),
-      cmocka_unit_test(real_meshes),
+      cmocka_unit_test(closed_soups_have_none), cmocka_unit_test(a_sheet_has_one),
+      cmocka_unit_test(slits_along_panels),     cmocka_unit_test(holes_that_touch),
+      cmocka_unit_test(rims_run_one_way),       cmocka_unit_test(random_soups),
+      cmocka_unit_test(fans_of_many_edges),     cmocka_unit_test(real_meshes),
       cmocka_unit_test(memory_may_run_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -162,6 +162,7 @@ static void check(const vxm_soup *soup, int sign, int64_t parts) {
     twice += number[i] == 2;
   }
   assert_int_equal(report.self_overlapping_parts, parts);
+  assert_int_equal(report.hollow_overlaps, 0);
   assert_true(parts == 0 || twice > 10);
   vxm_grid_destroy(grid);
   free(number);
@@ -308,6 +309,64 @@ static void test_others_are_left(void **state) {
     vxm_grid *grid = voxelize_centres(soup, &report), *expected = voxelize(soup, by_parity, NULL);
     assert_int_equal(report.self_overlapping_parts, 0);
     assert_memory_equal(grid->words, expected->words, grid->word_count * sizeof *grid->words);
+    vxm_grid_destroy(expected);
+    vxm_grid_destroy(grid);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** Turns all faces of a ring of the tube over. */
+static void turn_ring(vxm_soup *soup, size_t ring) {
+  for (size_t f = ring * 2 * SIDES; f < (ring + 1) * 2 * SIDES; f++)
+    reverse_face(soup, f);
+}
+
+/** How much of what a tube encloses it winds around twice. */
+static double share_wound_twice(const vxm_soup *soup) {
+  signed char *number = winding_numbers(soup, 1);
+  int twice = 0, all = 0;
+  for (size_t i = 0; i < WIDTH * WIDTH * WIDTH; i++) {
+    twice += number[i] == 2;
+    all += number[i] == 1 || number[i] == 2;
+  }
+  free(number);
+  return (double)twice / all;
+}
+
+/** The share in percent that a warning tells of, or 0 if none does. */
+static double share_told(const vxm_grid *grid) {
+  for (int64_t w = 0; w < vxm_grid_warning_count(grid); w++) {
+    const char *found = strstr(vxm_grid_warning(grid, w), " hollow there: ");
+    if (found)
+      return strtod(found + strlen(" hollow there: "), NULL);
+  }
+  return 0;
+}
+
+/** A tube with a ring of faces that are wound against the others stays as parity has it, and that is told. */
+static void test_what_stays_hollow_is_told(void **state) {
+  (void)state;
+  vxm_rng rng = {17};
+  for (int round = 0; round < ROUNDS(12); round++) {
+    vxm_soup *soup = shape_empty(context);
+    turning turned = random_turning(&rng);
+    bool crossing = round % 3 != 0;
+    add_tube(soup, &turned, crossing ? 0.3 * vxm_rng_unit(&rng) : 6, crossing ? 2 : 1.2);
+    double share = share_wound_twice(soup);
+    turn_ring(soup, RINGS / 4); /* far from where the branches cross */
+    for (size_t f = 0; round % 2 && f < soup->face_count; f++)
+      reverse_face(soup, f);
+    vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT, other = VXM_VOXELIZE_REPORT_INIT;
+    vxm_voxelize_options by_parity = defaults;
+    by_parity.method = VXM_METHOD_X;
+    vxm_grid *grid = voxelize_centres(soup, &report), *expected = voxelize(soup, by_parity, &other);
+    assert_int_equal(report.self_overlapping_parts, 0);
+    assert_int_equal(report.hollow_overlaps, crossing);
+    assert_int_equal(other.hollow_overlaps, 0);
+    assert_memory_equal(grid->words, expected->words, grid->word_count * sizeof *grid->words);
+    if (fabs(share_told(grid) - 100 * share) > 2)
+      fail_msg("%.3g %% is wound twice, and %.3g %% told", 100 * share, share_told(grid));
+    assert_true(share_told(expected) == 0);
     vxm_grid_destroy(expected);
     vxm_grid_destroy(grid);
     vxm_soup_destroy(soup);
@@ -477,6 +536,7 @@ int main(void) {
       cmocka_unit_test(test_with_holes),
       cmocka_unit_test(test_at_the_rim),
       cmocka_unit_test(test_others_are_left),
+      cmocka_unit_test(test_what_stays_hollow_is_told),
       cmocka_unit_test(test_ways),
       cmocka_unit_test(test_confidence),
       cmocka_unit_test(test_extremes),

@@ -151,6 +151,25 @@ static void warn_of_open(vxm_model_pass *pass, const vxm_voxelize_report *report
                : "that may leave holes and streaks: --vote auto asks the winding number");
 }
 
+/** Of what parity leaves hollow though it may be solid. */
+static void warn_of_hollow_overlaps(vxm_model_pass *pass, const vxm_voxelize_report *report) {
+  if (report->hollow_overlaps == 0)
+    return;
+  const vxm_triangle_set *triangles = &pass->solid.analysis->triangles;
+  const vxm_self_overlap *overlap = &pass->solid.analysis->self_overlap;
+  const double *at =
+      triangles->positions[triangles->corners[triangles->parts[overlap->hollow_part].begin][0]];
+  bool one = report->hollow_overlaps == 1;
+  vxm_warn(
+      pass->warnings,
+      "%" PRId64 " of %" PRId64 " parts seem%s to run through %s, but %s faces are wound against each other, "
+      "so that %s hollow there: %s%.2g %% of what that at (%.4g, %.4g, %.4g) encloses, which may be a room; "
+      "look at it with 'view': --method winding fills it",
+      report->hollow_overlaps, report->parts, one ? "s" : "", one ? "itself" : "themselves",
+      one ? "its" : "their", one ? "it stays" : "they stay", one ? "" : "up to ", 100 * overlap->hollow_share,
+      at[0], at[1], at[2]);
+}
+
 static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
   vxm_warnings *warnings = pass->warnings;
   bool faces = vxm_faces_wanted(&pass->solid.options);
@@ -169,6 +188,7 @@ static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
   const vxm_engine *engine = pass->solid.engine;
   if (engine && engine->falls_back && !engine->ops)
     vxm_warn(warnings, "%s", engine->info.note);
+  warn_of_hollow_overlaps(pass, report);
   if (report->contested > 0)
     warn_of_open(pass, report);
 }
@@ -191,6 +211,9 @@ void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t
       .self_overlapping_parts = vxm_overlaps_wanted(pass->solid.analysis, &pass->solid.options)
                                     ? (int64_t)pass->solid.analysis->self_overlap.part_count
                                     : 0,
+      .hollow_overlaps = vxm_fills_overlaps(&pass->solid.options)
+                             ? (int64_t)pass->solid.analysis->self_overlap.hollow_count
+                             : 0,
       .thin_voxels = pass->is_field ? 0 : pass->thin.thin.added};
   if (pass->thin.thin.area > 0)
     report->thin_share =

@@ -16,6 +16,8 @@ enum {
 
 /** Of the length inside: what is less is not worth the time, or comes of rounding. */
 static const double noticed = 1e-5;
+/** Of the same: what is left hollow is worth a word if it is more. */
+static const double told = 0.002;
 /** Where a line lies between two places: corners rarely lie there. */
 static const double between = 0.4371;
 
@@ -47,6 +49,9 @@ typedef struct finder {
   crossing *sorted; /**< by line */
   size_t sorted_capacity, closed_capacity, part_capacity;
   uint32_t ends[LINES_MOST * LINES_MOST + 1];
+  bool contradicted; /**< some lines are entered more or less often than left */
+  /* Of the others: */
+  double length;              /**< wound around at all */
   double inside;              /**< length times number */
   double twice_out, twice_in; /**< lengths wound 2, 4, ... and -2, -4, ... times */
   vxm_error error;
@@ -264,33 +269,60 @@ static void sort_along(crossing *at, size_t count) {
   }
 }
 
-/** Adds up one line; false if it is entered more or less often than left, as where faces are wound against
- * each other. */
-static bool follow(finder *f, const crossing *at, size_t count) {
+static int sum_of_signs(const crossing *at, size_t count) {
+  int sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += at[i].sign;
+  return sum;
+}
+
+/** Adds up one line. */
+static void follow(finder *f, const crossing *at, size_t count) {
+  if (sum_of_signs(at, count) != 0) {
+    f->contradicted = true;
+    return;
+  }
   int wound = 0;
   for (size_t i = 0; i < count; i++) {
     double length = wound ? at[i].x - at[i - 1].x : 0;
+    f->length += length;
     f->inside += wound * length;
     if (wound % 2 == 0)
       *(wound > 0 ? &f->twice_out : &f->twice_in) += length;
     wound += at[i].sign;
   }
-  return wound == 0;
 }
 
-/** Whether the part is wound twice somewhere. */
-static bool follow_all(finder *f) {
+static void follow_all(finder *f) {
   size_t line_count = (size_t)f->lines[0].count * (size_t)f->lines[1].count, begin = 0;
-  f->inside = f->twice_out = f->twice_in = 0;
+  f->contradicted = false;
+  f->length = f->inside = f->twice_out = f->twice_in = 0;
   for (size_t line = 0; line < line_count; line++) {
     size_t count = f->ends[line] - begin;
     sort_along(f->sorted + begin, count);
-    if (!follow(f, f->sorted + begin, count))
-      return false;
+    follow(f, f->sorted + begin, count);
     begin = f->ends[line];
   }
-  double twice = f->inside < 0 ? f->twice_in : f->twice_out;
-  return twice > noticed * fabs(f->inside);
+}
+
+static double twice_of(const finder *f) {
+  return f->inside < 0 ? f->twice_in : f->twice_out;
+}
+
+/** Whether the part is wound twice somewhere, and nothing speaks against it that its faces are a chain. */
+static bool is_overlapping(const finder *f) {
+  return !f->contradicted && twice_of(f) > noticed * fabs(f->inside);
+}
+
+/** A part of which no chain was made: whether it is wound twice somewhere, and hollow. */
+static void tell_of_hollow(vxm_self_overlap *out, const finder *f, size_t part) {
+  if (!(twice_of(f) > told * f->length))
+    return;
+  double share = twice_of(f) / f->length;
+  if (out->hollow_count++ == 0 || share > out->hollow_share) {
+    out->hollow_share = share;
+    out->hollow_part = part;
+  }
 }
 
 /* ---- The chain ---- */
@@ -351,7 +383,15 @@ static vxm_status look_at_part(vxm_self_overlap *out, finder *f, size_t part) {
   if (status != VXM_OK || f->count > CROSSINGS_MOST)
     return status;
   status = sort_by_line(f);
-  return status == VXM_OK && follow_all(f) ? add_part(out, f, part, begin, end) : status;
+  if (status != VXM_OK)
+    return status;
+  size_t added = out->part_count;
+  follow_all(f);
+  if (is_overlapping(f))
+    status = add_part(out, f, part, begin, end);
+  if (out->part_count == added)
+    tell_of_hollow(out, f, part);
+  return status;
 }
 
 vxm_status vxm_self_overlap_find(vxm_self_overlap *out, const vxm_triangle_set *triangles, vxm_error *error) {

@@ -14,6 +14,9 @@ typedef struct vxm_self_overlap {
   vxm_winding_chain chain; /**< faces and caps of all such parts, turned outward: closed, without a rest */
   size_t *part;            /**< their numbers */
   size_t part_count;       /**< 0 = there are none, and no chain */
+  size_t hollow_count; /**< parts that seem to lie in themselves, too, but of which no chain can be made */
+  size_t hollow_part;  /**< that of them which does so most */
+  double hollow_share; /**< and how much of what lines run inside of it is wound twice */
 } vxm_self_overlap;
 
 /**
@@ -24,6 +27,7 @@ typedef struct vxm_self_overlap {
  * through what is wound twice, or more often, for more than 10^-5 of what they run inside of; so one that
  * overlaps itself in a small place only may be passed over. Its faces must be wound consistently, as a repair
  * leaves them where it can: a wall of two skins that face the same way is wound twice as well, and hollow.
+ * Where they are not, it is only counted if it seems to be wound twice for more than 1/500.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; to be destroyed in any case.
  * Takes time linear in the number of triangles
