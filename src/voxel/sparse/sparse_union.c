@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/threads.h"
 #include "voxel/sparse/sparse.h"
+#include "voxel/winding/chain_flips.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
@@ -26,6 +28,7 @@ typedef struct scratch {
   uint8_t *has_flips; /**< per node, in whole words */
   /* A bit per node: whether something is united in it, whether all of it is full. */
   uint64_t *is_united, *is_full;
+  vxm_chain_flips wound; /**< of the chain, as of a part behind all others */
 } scratch;
 
 /** Where a row of a strip lies: in which row of bricks in the order of vxm_strip_add_node, and at which bits
@@ -38,12 +41,14 @@ typedef struct sparse_state {
   vxm_octree_builder *builder;
   vxm_crossing_bins *bins;
   const vxm_sparse_job *job;
+  vxm_chain_winding *chain; /**< NULL = none */
+  bool with_chain;          /**< in this round */
   const vxm_kernels *kernels;
   vxm_columns columns;
   int row_shift;    /**< a row of records has 2^row_shift of them */
   size_t nodes;     /**< of a strip */
   size_t first;     /**< slab of the window */
-  bool many;        /**< parts are united, or rounds */
+  bool many;        /**< parts, or a part and the chain, are united, or rounds */
   bool again;       /**< there may be something in the strips already */
   uint64_t last[4]; /**< per x: the voxels of a brick of the last node that the space has */
   scratch *scratches;
@@ -112,7 +117,9 @@ static size_t count_flips(const sparse_state *state, scratch *d, size_t slab) {
         }
       }
   }
-  return total;
+  for (size_t i = 0; i < d->wound.count; i++)
+    d->ends[d->wound.places[i] >> shift][0]++;
+  return total + d->wound.count;
 }
 
 /** How records of a slab become flips. */
@@ -161,12 +168,24 @@ static void put_piece(const sparse_state *state, scratch *d, const vxm_crossing_
   }
 }
 
+/** The flips of the chain in a slab, if it is there in this round. */
+static bool take_chain(sparse_state *state, scratch *d, size_t slab) {
+  size_t rows = state->builder->across * VXM_STRIP_VOXELS * VXM_STRIP_VOXELS;
+  d->wound.count = 0;
+  if (!state->with_chain)
+    return true;
+  vxm_status status = vxm_chain_flips_take(&d->wound, state->chain, slab, rows, state->row_shift);
+  if (status != VXM_OK)
+    atomic_store_explicit(&state->builder->failed, (int)status, memory_order_relaxed);
+  return status == VXM_OK;
+}
+
 /** Sorts the flips of a slab by strip, and by part within; false if memory ran out. */
 static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
   enum { WORKERS_MAX = 256 };
   vxm_crossing_bin_reader reader[WORKERS_MAX];
   size_t workers = state->bins->workers;
-  if (!reserve(state, d, count_flips(state, d, slab)))
+  if (!take_chain(state, d, slab) || !reserve(state, d, count_flips(state, d, slab)))
     return false;
   uint32_t sum = 0;
   for (size_t s = 0; s < state->builder->across; s++)
@@ -183,11 +202,14 @@ static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
     for (size_t w = 0; w < workers; w++)
       part = reader[w].part < part ? reader[w].part : part;
     if (part == VXM_BIN_NONE)
-      return true;
+      break;
     for (size_t w = 0; w < workers; w++)
       while (reader[w].part == part && vxm_crossing_bin_next(&reader[w], &piece))
         put_piece(state, d, &piece, part);
   }
+  vxm_crossing_bin_piece chain = {d->wound.places, d->wound.count, false};
+  put_piece(state, d, &chain, (uint32_t)state->job->part_end);
+  return true;
 }
 
 /* ---- A part of a strip ---- */
@@ -309,7 +331,10 @@ static void put_united(sparse_state *state, scratch *d, size_t worker) {
   }
 }
 
+/** Notes that a part has voxels. Whether the chain adds some is not told. */
 static void touch(const sparse_state *state, uint32_t part) {
+  if (part == state->job->part_end)
+    return;
   atomic_store_explicit(&state->job->has_voxels[part], 1, memory_order_relaxed);
 }
 
@@ -413,6 +438,7 @@ static void free_scratches(sparse_state *state, size_t workers) {
     vxm_free(context, d->united);
     vxm_free(context, d->has_flips);
     vxm_free(context, d->is_united);
+    vxm_chain_flips_free(&d->wound, context);
   }
   vxm_free(context, state->scratches);
 }
@@ -420,12 +446,15 @@ static void free_scratches(sparse_state *state, size_t workers) {
 /** Slabs of a window: so few that its crossings are not too many, so many that all threads have work. */
 static size_t window_slabs(const sparse_state *state) {
   vxm_context *context = state->builder->context;
-  double bound = vxm_raster_schedule_placed_bound(state->job->placed, state->columns.roles);
+  double of_chain = state->chain ? state->chain->estimate : 0;
+  double bound = vxm_raster_schedule_placed_bound(state->job->placed, state->columns.roles) + of_chain;
   double most = vxm_raster_schedule_round(context), slabs = (double)state->builder->deep;
   most = most < CROSSINGS ? most : CROSSINGS;
   double wanted = slabs * most / (bound + 1);
-  size_t least = 4 * (size_t)vxm_context_threads(context);
-  return wanted < (double)least ? least : wanted > slabs ? state->builder->deep : (size_t)wanted;
+  double least = 4 * (double)vxm_context_threads(context);
+  /* Of the chain all crossings are kept, never as bitmaps. */
+  least = fmin(least, fmax(1, slabs * vxm_raster_schedule_round(context) / (of_chain + 1)));
+  return (size_t)fmin(fmax(wanted, least), slabs);
 }
 
 /** Slabs first to end - 1. */
@@ -436,19 +465,29 @@ static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_
   state->first = first;
   state->columns.begin[2] = (int64_t)first << SLAB_SHIFT;
   state->columns.end[2] = vxm_min((int64_t)end << SLAB_SHIFT, builder->space.dims[2]);
-  vxm_status status = vxm_raster_schedule_plan(crossings, state->job->triangles, state->job->placed,
-                                               &state->columns, 1, error);
+  size_t of_chain = 0;
+  vxm_status status = VXM_OK;
+  if (state->chain)
+    status = vxm_chain_winding_steps(&of_chain, state->chain, workspace, state->job->placed, &state->columns,
+                                     error);
+  if (status == VXM_OK)
+    status = vxm_raster_schedule_plan(crossings, state->job->triangles, state->job->placed, &state->columns,
+                                      1, error);
   /* Progress goes on where the window before ended, in steps of this one. */
-  size_t steps = crossings->range_count + crossings->round_count * (end - first);
+  size_t rounds = crossings->round_count, steps = of_chain + crossings->range_count + rounds * (end - first);
   state->watch.total = (steps * builder->deep + end - first) / (end - first);
   atomic_store_explicit(&state->watch.done, steps * first / (end - first), memory_order_relaxed);
   size_t slab_words = builder->across << (state->row_shift + 8 - 6);
-  for (size_t round = 0; round < crossings->round_count && status == VXM_OK; round++) {
+  for (size_t round = 0; round < rounds && status == VXM_OK; round++) {
     status = vxm_crossing_bins_reset(state->bins, builder->workers, 1, end - first, slab_words, error);
     if (status != VXM_OK)
       break;
     vxm_raster_schedule_run(crossings, round, state->bins, &state->watch);
     status = vxm_crossing_bins_check(state->bins, error);
+    state->with_chain = state->chain && round + 1 == rounds;
+    if (state->with_chain && status == VXM_OK && state->watch.status == VXM_OK)
+      status = vxm_chain_winding_raster(state->chain, workspace, state->job->placed, &state->columns,
+                                        end - first, &state->watch, error);
     if (status != VXM_OK || state->watch.status != VXM_OK)
       break;
     state->again = round > 0;
@@ -459,14 +498,15 @@ static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_
 }
 
 vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspace, const vxm_sparse_job *job,
-                            vxm_error *error) {
+                            vxm_chain_winding *chain, vxm_error *error) {
   if (job->part_end == 0)
     return VXM_OK;
   sparse_state state = {.builder = builder,
                         .bins = &workspace->bins,
                         .job = job,
+                        .chain = chain,
                         .kernels = vxm_kernels_get(),
-                        .many = job->part_end > 1};
+                        .many = job->part_end > 1 || chain};
   shape(&state);
   vxm_status status = make_scratches(&state, builder->workers, error);
   vxm_task_progress_start(&state.watch, builder->context, "voxelizing", 1, error);
