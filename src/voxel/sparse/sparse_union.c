@@ -1,28 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/threads.h"
 #include "voxel/sparse/sparse.h"
+#include "voxel/sparse/strip_flips.h"
 #include "voxel/winding/chain_flips.h"
 
 #include <math.h>
 #include <string.h>
 
 enum {
-  SLAB_SHIFT = 4,      /**< slabs are as thick as strips */
-  CROSSINGS = 1 << 22, /**< of a window, at most */
-  STREAMS = 4 /**< what is sorted is read at so many places in turn, so that a step need not wait for the one
-                 before, which mostly goes to the same word */
+  SLAB_SHIFT = 4,     /**< slabs are as thick as strips */
+  CROSSINGS = 1 << 22 /**< of a window, at most */
 };
-
-/** A flip within a strip: its voxel along x, above the 8 bits of its row, 16 y + z. */
-typedef uint32_t flip;
 
 /** What a thread works with. */
 typedef struct scratch {
-  flip *flips; /**< of a slab, strip after strip */
+  vxm_strip_flip *flips; /**< of a slab, strip after strip */
   uint32_t *parts;
   size_t capacity;
-  uint32_t (*ends)[STREAMS]; /**< per strip and stream: how many flips, then where the next goes, then behind
-                                them */
+  vxm_strip_ends *ends; /**< of each strip; in the end behind its flips */
   /* Of a strip, per brick in the order of vxm_strip_add_node, node after node; clear between strips. */
   uint64_t *flipped, *united;
   uint8_t *has_flips; /**< per node, in whole words */
@@ -81,91 +76,29 @@ static bool reserve(sparse_state *state, scratch *d, size_t count) {
   return local.code == VXM_OK;
 }
 
-static void count_records(int shift, uint32_t (*ends)[STREAMS], const uint64_t *records, size_t count) {
-  size_t share = count / STREAMS;
-  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
-  for (size_t i = 0; i < share; i++) {
-    ends[a[i] >> shift][0]++;
-    ends[b[i] >> shift][1]++;
-    ends[c[i] >> shift][2]++;
-    ends[d[i] >> shift][3]++;
-  }
-  for (size_t i = STREAMS * share; i < count; i++)
-    ends[records[i] >> shift][0]++;
+/** The flips of the chain in a slab, as a piece. */
+static vxm_crossing_bin_piece piece_of_chain(const scratch *d) {
+  return (vxm_crossing_bin_piece){d->wound.places, d->wound.count, false};
 }
 
 /** Counts the flips of each strip; returns how many there are. */
 static size_t count_flips(const sparse_state *state, scratch *d, size_t slab) {
-  int shift = state->row_shift + 8;
-  size_t total = 0;
+  vxm_crossing_bin_piece piece = piece_of_chain(d);
   memset(d->ends, 0, state->builder->across * sizeof *d->ends);
+  size_t total = vxm_strip_flips_count(d->ends, &piece, state->row_shift, state->many);
   for (size_t w = 0; w < state->bins->workers; w++) {
     vxm_crossing_bin_reader reader =
         vxm_crossing_bin_read(vxm_crossing_bins_at(state->bins, w, 0, slab), !state->many);
-    vxm_crossing_bin_piece piece;
     while (reader.part != VXM_BIN_NONE)
-      while (vxm_crossing_bin_next(&reader, &piece)) {
-        for (size_t i = 0; i < piece.count && state->many && !piece.is_bitmap; i++)
-          d->ends[piece.data[i] >> shift][0]++;
-        if (!state->many && !piece.is_bitmap)
-          count_records(shift, d->ends, piece.data, piece.count);
-        total += piece.is_bitmap ? 0 : piece.count;
-        for (size_t i = 0; i < piece.count && piece.is_bitmap; i++) {
-          size_t flips = (size_t)vxm_popcount(piece.data[i]);
-          d->ends[64 * i >> shift][0] += (uint32_t)flips;
-          total += flips;
-        }
-      }
+      while (vxm_crossing_bin_next(&reader, &piece))
+        total += vxm_strip_flips_count(d->ends, &piece, state->row_shift, state->many);
   }
-  for (size_t i = 0; i < d->wound.count; i++)
-    d->ends[d->wound.places[i] >> shift][0]++;
-  return total + d->wound.count;
+  return total;
 }
 
-/** How records of a slab become flips. */
-typedef struct decoding {
-  int row_shift;
-  uint64_t in_row;
-} decoding;
-
-static inline flip flip_of(decoding how, uint64_t record) {
-  return (flip)(record & how.in_row) << 8 | (flip)(record >> how.row_shift & 255);
-}
-
-/** Puts flips where the next ones of their strip and stream go, as count_records has counted them. */
-static void put_records(decoding how, flip *flips, uint32_t (*ends)[STREAMS], const uint64_t *records,
-                        size_t count) {
-  int shift = how.row_shift + 8;
-  size_t share = count / STREAMS;
-  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
-  for (size_t i = 0; i < share; i++) {
-    flips[ends[a[i] >> shift][0]++] = flip_of(how, a[i]);
-    flips[ends[b[i] >> shift][1]++] = flip_of(how, b[i]);
-    flips[ends[c[i] >> shift][2]++] = flip_of(how, c[i]);
-    flips[ends[d[i] >> shift][3]++] = flip_of(how, d[i]);
-  }
-  for (size_t i = STREAMS * share; i < count; i++)
-    flips[ends[records[i] >> shift][0]++] = flip_of(how, records[i]);
-}
-
-/** Puts each flip of a piece where the next one of its strip goes. */
 static void put_piece(const sparse_state *state, scratch *d, const vxm_crossing_bin_piece *piece,
-                      uint32_t part) {
-  decoding how = {state->row_shift, vxm_low_bits((unsigned)state->row_shift)};
-  if (!state->many && !piece->is_bitmap) {
-    put_records(how, d->flips, d->ends, piece->data, piece->count);
-    return;
-  }
-  for (size_t i = 0; i < piece->count; i++) {
-    uint64_t left = piece->is_bitmap ? piece->data[i] : 1;
-    for (; left; left &= left - 1) {
-      uint64_t record = piece->is_bitmap ? 64 * i + (unsigned)__builtin_ctzll(left) : piece->data[i];
-      uint32_t to = d->ends[record >> (how.row_shift + 8)][0]++;
-      d->flips[to] = flip_of(how, record);
-      if (state->many)
-        d->parts[to] = part;
-    }
-  }
+                      size_t part) {
+  vxm_strip_flips_put(d->flips, d->parts, d->ends, piece, state->row_shift, (uint32_t)part);
 }
 
 /** The flips of the chain in a slab, if it is there in this round. */
@@ -189,7 +122,7 @@ static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
     return false;
   uint32_t sum = 0;
   for (size_t s = 0; s < state->builder->across; s++)
-    for (size_t k = 0; k < STREAMS; k++) {
+    for (size_t k = 0; k < VXM_STRIP_STREAMS; k++) {
       uint32_t count = d->ends[s][k];
       d->ends[s][k] = sum;
       sum += count;
@@ -207,8 +140,8 @@ static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
       while (reader[w].part == part && vxm_crossing_bin_next(&reader[w], &piece))
         put_piece(state, d, &piece, part);
   }
-  vxm_crossing_bin_piece chain = {d->wound.places, d->wound.count, false};
-  put_piece(state, d, &chain, (uint32_t)state->job->part_end);
+  vxm_crossing_bin_piece chain = piece_of_chain(d);
+  put_piece(state, d, &chain, state->job->part_end);
   return true;
 }
 
@@ -261,9 +194,9 @@ static void put_gap(sparse_state *state, scratch *d, size_t worker, size_t begin
 
 /** Flips voxels of a strip, and warnings the nodes that have flips. */
 static void flip_voxels(const strip_place *restrict places, uint64_t *restrict flipped,
-                        uint8_t *restrict has_flips, const flip *restrict flips, size_t count) {
+                        uint8_t *restrict has_flips, const vxm_strip_flip *restrict flips, size_t count) {
   for (size_t i = 0; i < count; i++) {
-    flip f = flips[i];
+    vxm_strip_flip f = flips[i];
     strip_place place = places[f & 255];
     flipped[(f >> 10) * 16 + place.row] ^= (UINT64_C(15) << (f >> 8 & 3) & 15) << place.shift;
     has_flips[f >> 12] = 1;
@@ -271,7 +204,8 @@ static void flip_voxels(const strip_place *restrict places, uint64_t *restrict f
 }
 
 /** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
-static uint64_t fold_flips(sparse_state *state, scratch *d, size_t worker, const flip *flips, size_t count) {
+static uint64_t fold_flips(sparse_state *state, scratch *d, size_t worker, const vxm_strip_flip *flips,
+                           size_t count) {
   uint64_t inside[16] = {0}, any = 0;
   size_t done = 0;
   flip_voxels(state->places, d->flipped, d->has_flips, flips, count);
@@ -367,7 +301,7 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   size_t begin = 0;
   for (size_t y = 0; y < state->builder->across; y++) {
-    size_t end = d->ends[y][STREAMS - 1];
+    size_t end = d->ends[y][VXM_STRIP_STREAMS - 1];
     if (end > begin)
       do_strip(state, d, (size_t)worker, y, state->first + task, begin, end);
     begin = end;
