@@ -156,10 +156,11 @@ bool vxm_coverage_flips_any(const vxm_coverage_flips *f) {
   return BY_SHIFT(f, any_flips, f);
 }
 
-/** A row that has flips in `from`. */
-static inline ALWAYS void unite_row(vxm_coverage_flips *f, vxm_coverage_flips *from, size_t row, int shift) {
+/** A row that has flips in `from`. Returns the OR of what was not set. */
+static inline ALWAYS uint64_t unite_row(vxm_coverage_flips *f, vxm_coverage_flips *from, size_t row,
+                                        int shift) {
   voxel_bits ours = {{0}, 0}, theirs = {{0}, 0};
-  uint64_t inside = 0;
+  uint64_t inside = 0, added = 0;
   for (size_t w = row * f->stride / 64, end = w + f->stride / 64; w < end; w++) {
     uint64_t left = f->touched[w] |= from->touched[w];
     from->touched[w] = 0;
@@ -168,24 +169,29 @@ static inline ALWAYS void unite_row(vxm_coverage_flips *f, vxm_coverage_flips *f
       fold(&ours, f->words, voxel, shift);
       fold(&theirs, from->words, voxel, shift);
       voxel_bits both = ours;
-      for (int i = 0; i < (shift == 3 ? 8 : 1); i++)
+      for (int i = 0; i < (shift == 3 ? 8 : 1); i++) {
         both.word[i] |= theirs.word[i];
+        added |= both.word[i] ^ ours.word[i];
+      }
       unfold(&both, &inside, f->words, voxel, shift);
     }
   }
+  return added;
 }
 
-static inline ALWAYS void unite(vxm_coverage_flips *f, vxm_coverage_flips *from, int shift) {
+static inline ALWAYS bool unite(vxm_coverage_flips *f, vxm_coverage_flips *from, int shift) {
+  uint64_t added = 0;
   for (size_t r = 0; r <= f->rows / 64; r++) {
     for (uint64_t rows = from->touched_rows[r]; rows; rows &= rows - 1)
-      unite_row(f, from, 64 * r + (size_t)__builtin_ctzll(rows), shift);
+      added |= unite_row(f, from, 64 * r + (size_t)__builtin_ctzll(rows), shift);
     f->touched_rows[r] |= from->touched_rows[r];
     from->touched_rows[r] = 0;
   }
+  return added != 0;
 }
 
-void vxm_coverage_flips_unite(vxm_coverage_flips *f, vxm_coverage_flips *from) {
-  BY_SHIFT(f, unite, f, from);
+bool vxm_coverage_flips_unite(vxm_coverage_flips *f, vxm_coverage_flips *from) {
+  return BY_SHIFT(f, unite, f, from);
 }
 
 /* ---- Values ---- */

@@ -40,8 +40,8 @@ void vxm_coverage_flips_free(vxm_coverage_flips *flips, vxm_context *context);
 void vxm_coverage_flip(vxm_coverage_flips *flips, size_t first, const uint64_t *places, size_t count);
 /** Whether there is a voxel with a sub-voxel that is set. */
 bool vxm_coverage_flips_any(const vxm_coverage_flips *flips);
-/** Sets what is set in `from` as well, which is cleared. */
-void vxm_coverage_flips_unite(vxm_coverage_flips *flips, vxm_coverage_flips *from);
+/** Sets what is set in `from` as well, which is cleared. @return whether that was not all set before */
+bool vxm_coverage_flips_unite(vxm_coverage_flips *flips, vxm_coverage_flips *from);
 /** Puts the values of so many rows, the flips of which are cleared. */
 void vxm_coverage_put_rows(vxm_coverage_flips *flips, size_t rows, vxm_coverage_writer *writer);
 

@@ -22,23 +22,33 @@ static void unite_slice(size_t slice, int worker, void *payload) {
     atomic_store_explicit(&job->added, true, memory_order_relaxed);
 }
 
+vxm_status vxm_self_overlap_place(vxm_voxel_pass *pass, int axis, vxm_error *error) {
+  if (pass->overlap_placed)
+    return VXM_OK;
+  vxm_status status = vxm_chain_winding_place(&pass->overlap_winding, &pass->analysis->self_overlap.chain,
+                                              &pass->placed, axis, pass->mirrored, error);
+  pass->overlap_placed = status == VXM_OK;
+  return status;
+}
+
+void vxm_self_overlap_note(vxm_voxel_pass *pass) {
+  const vxm_self_overlap *overlap = &pass->analysis->self_overlap;
+  for (size_t i = 0; i < overlap->part_count && pass->has_voxels; i++)
+    atomic_store_explicit(&pass->has_voxels[overlap->part[i]], 1, memory_order_relaxed);
+}
+
 vxm_status vxm_self_overlap_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
   if (!vxm_overlaps_wanted(pass->analysis, &pass->options))
     return VXM_OK;
   vxm_chain_winding *wound = &pass->overlap_winding;
-  vxm_status status = VXM_OK;
-  if (!pass->overlap_placed)
-    status = vxm_chain_winding_place(wound, &pass->analysis->self_overlap.chain, &pass->placed,
-                                     window->layout.fast, pass->mirrored, error);
-  pass->overlap_placed = status == VXM_OK;
+  vxm_status status = vxm_self_overlap_place(pass, window->layout.fast, error);
   if (status == VXM_OK)
     status = vxm_chain_winding_fill(wound, pass->workspace, &pass->placed, window, false, error);
   union_job job = {.window = window, .other = &wound->window};
   if (status == VXM_OK)
     status =
         vxm_parallel_asked(pass->context, (size_t)(window->end - window->begin), unite_slice, &job, error);
-  if (job.added && pass->has_voxels)
-    for (size_t i = 0; i < pass->analysis->self_overlap.part_count; i++)
-      atomic_store_explicit(&pass->has_voxels[pass->analysis->self_overlap.part[i]], 1, memory_order_relaxed);
+  if (job.added)
+    vxm_self_overlap_note(pass);
   return status;
 }

@@ -13,4 +13,10 @@
  */
 vxm_status vxm_self_overlap_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error);
 
+/** For those who fill them otherwise: gets the pass's overlap_winding ready for rows along an axis, the same
+ * in all of a pass. @return as vxm_chain_winding_place */
+vxm_status vxm_self_overlap_place(vxm_voxel_pass *pass, int axis, vxm_error *error);
+/** Notes that they have voxels: to be called where a voxel has been set that was not. */
+void vxm_self_overlap_note(vxm_voxel_pass *pass);
+
 #endif

@@ -2,8 +2,14 @@
 #include "voxel/sparse/sparse.h"
 #include "voxel/model/memory_need.h"
 #include "voxel/model/model_report.h"
+#include "voxel/solid/self_overlap_fill.h"
 #include "voxel/surface/surface_octree.h"
 #include "voxel/thin/thin_sparse.h"
+
+#include <math.h>
+
+/** The axis of rows of an octree. */
+enum { along_x = 0 };
 
 /** Bytes of a range of slices, unless so few are more. */
 static const uint64_t window_bytes_most = UINT64_C(1) << 26;
@@ -15,7 +21,7 @@ bool vxm_sparse_is_direct(const vxm_model *model) {
     return false;
   if (vxm_one_voter(options)) /* of closed parts all axes tell the same */
     return options->method == VXM_METHOD_X || split->kind_end[VXM_PART_CLOSED] == split->part_count;
-  return !vxm_votes_wanted(&model->analysis, options) && !vxm_overlaps_wanted(&model->analysis, options);
+  return !vxm_votes_wanted(&model->analysis, options);
 }
 
 static bool is_direct_forced;
@@ -39,6 +45,8 @@ static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pas
   const vxm_engine *engine = pass->solid.engine;
   const vxm_engine_ops *ops = engine ? engine->ops : NULL;
   bool solid = vxm_solid_wanted(&model->options), faces = vxm_faces_wanted(&model->options);
+  if (ops && vxm_overlaps_wanted(&model->analysis, &model->options))
+    return false; /* parts that lie in themselves are filled by the CPU */
   if (ops && ((solid && !ops->sparse) || (faces && ops->surface && !ops->sparse_surface)))
     return false; /* the engine makes windows only */
   return !solid || (vxm_sparse_is_direct(model) && (ops || !is_better_in_grid(pass)));
@@ -56,16 +64,54 @@ static vxm_sparse_job job_of(const vxm_model_pass *pass) {
   return job;
 }
 
-static vxm_status unite_directly(vxm_sparse **out, vxm_model_pass *pass, const vxm_sparse_job *job,
-                                 vxm_error *error) {
+static vxm_status unite_parts(vxm_sparse **out, vxm_model_pass *pass, const vxm_sparse_job *job,
+                              vxm_chain_winding *chain, vxm_error *error) {
   vxm_octree_builder builder;
   vxm_status status = vxm_octree_builder_create(&builder, pass->solid.context, &pass->space, error);
   if (status == VXM_OK)
-    status = vxm_sparse_union(&builder, &pass->workspace, job, error);
+    status = vxm_sparse_union(&builder, &pass->workspace, job, chain, error);
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);
   return status;
+}
+
+/** Whether a part that lies in itself has no voxel by parity. */
+static bool lacks_voxels(const vxm_voxel_pass *solid) {
+  const vxm_self_overlap *overlap = &solid->analysis->self_overlap;
+  bool lacks = false;
+  for (size_t i = 0; i < overlap->part_count && solid->has_voxels; i++)
+    lacks |= !atomic_load_explicit(&solid->has_voxels[overlap->part[i]], memory_order_relaxed);
+  return lacks;
+}
+
+/** Notes whether the parts that lie in themselves have voxels only in what parity leaves hollow, which is so
+ * rare that the octree is made once more without that. */
+static vxm_status note_filled(const vxm_sparse *filled, vxm_model_pass *pass, const vxm_sparse_job *job,
+                              vxm_error *error) {
+  vxm_sparse *hollow;
+  int64_t voxels, of_parity;
+  uint64_t hash;
+  vxm_status status = unite_parts(&hollow, pass, job, NULL, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_octree_sum(filled, &voxels, &hash);
+  vxm_octree_sum(hollow, &of_parity, &hash);
+  vxm_sparse_destroy(hollow);
+  if (voxels > of_parity)
+    vxm_self_overlap_note(&pass->solid);
+  return VXM_OK;
+}
+
+static vxm_status unite_directly(vxm_sparse **out, vxm_model_pass *pass, const vxm_sparse_job *job,
+                                 vxm_error *error) {
+  vxm_voxel_pass *solid = &pass->solid;
+  if (!vxm_overlaps_wanted(solid->analysis, &solid->options))
+    return unite_parts(out, pass, job, NULL, error);
+  vxm_status status = vxm_self_overlap_place(solid, along_x, error);
+  if (status == VXM_OK)
+    status = unite_parts(out, pass, job, &solid->overlap_winding, error);
+  return status == VXM_OK && lacks_voxels(solid) ? note_filled(*out, pass, job, error) : status;
 }
 
 vxm_status vxm_sparse_closed(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
@@ -194,10 +240,23 @@ static vxm_status unite_by_windows(vxm_sparse **out, const vxm_model *model, vxm
   return status;
 }
 
+/** Whether all crossings of parts that lie in themselves may be kept that are in one layer of strips. */
+static bool is_layer_small(const vxm_voxel_pass *solid, const vxm_space *space) {
+  double layer = fmin(VXM_STRIP_VOXELS / (double)space->dims[2], 1);
+  return solid->overlap_winding.estimate * layer <= vxm_raster_schedule_round(solid->context);
+}
+
 static vxm_status make(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass, vxm_error *error) {
-  if (!is_without_windows(model, pass))
+  bool direct = is_without_windows(model, pass), solid = vxm_solid_wanted(&model->options);
+  vxm_status status = VXM_OK;
+  if (direct && vxm_overlaps_wanted(&model->analysis, &model->options)) {
+    status = vxm_self_overlap_place(&pass->solid, along_x, error);
+    direct = is_layer_small(&pass->solid, &pass->space);
+  }
+  if (status == VXM_OK && !direct)
     return unite_by_windows(out, model, pass, error);
-  vxm_status status = vxm_solid_wanted(&model->options) ? make_solid(out, pass, error) : VXM_OK;
+  if (status == VXM_OK && solid)
+    status = make_solid(out, pass, error);
   return status == VXM_OK && vxm_faces_wanted(&model->options) ? add_faces(out, pass, error) : status;
 }
 

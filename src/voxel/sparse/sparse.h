@@ -5,16 +5,19 @@
 
 #include "grid/octree_build.h"
 #include "voxel/model/model.h"
+#include "voxel/winding/chain_winding.h"
 
 /**
  * Makes the strips of every voxel inside at least one of the job's parts, by parity along x, as
  * vxm_parity_union does for a window; exact, and the same for any number of threads.
  *
  * @param builder in which all strips are empty
+ * @param chain   NULL, or a chain that is placed for rows along x: what it is wound around at least once is
+ * united, too
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspace, const vxm_sparse_job *job,
-                            vxm_error *error);
+                            vxm_chain_winding *chain, vxm_error *error);
 
 /** Whether one axis tells all of the solid: then the triangles become an octree directly. */
 bool vxm_sparse_is_direct(const vxm_model *model);

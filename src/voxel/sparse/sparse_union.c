@@ -1,31 +1,29 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/threads.h"
 #include "voxel/sparse/sparse.h"
+#include "voxel/sparse/strip_flips.h"
+#include "voxel/winding/chain_flips.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
-  SLAB_SHIFT = 4,      /**< slabs are as thick as strips */
-  CROSSINGS = 1 << 22, /**< of a window, at most */
-  STREAMS = 4 /**< what is sorted is read at so many places in turn, so that a step need not wait for the one
-                 before, which mostly goes to the same word */
+  SLAB_SHIFT = 4,     /**< slabs are as thick as strips */
+  CROSSINGS = 1 << 22 /**< of a window, at most */
 };
-
-/** A flip within a strip: its voxel along x, above the 8 bits of its row, 16 y + z. */
-typedef uint32_t flip;
 
 /** What a thread works with. */
 typedef struct scratch {
-  flip *flips; /**< of a slab, strip after strip */
+  vxm_strip_flip *flips; /**< of a slab, strip after strip */
   uint32_t *parts;
   size_t capacity;
-  uint32_t (*ends)[STREAMS]; /**< per strip and stream: how many flips, then where the next goes, then behind
-                                them */
+  vxm_strip_ends *ends; /**< of each strip; in the end behind its flips */
   /* Of a strip, per brick in the order of vxm_strip_add_node, node after node; clear between strips. */
   uint64_t *flipped, *united;
   uint8_t *has_flips; /**< per node, in whole words */
   /* A bit per node: whether something is united in it, whether all of it is full. */
   uint64_t *is_united, *is_full;
+  vxm_chain_flips wound; /**< of the chain, as of a part behind all others */
 } scratch;
 
 /** Where a row of a strip lies: in which row of bricks in the order of vxm_strip_add_node, and at which bits
@@ -38,12 +36,14 @@ typedef struct sparse_state {
   vxm_octree_builder *builder;
   vxm_crossing_bins *bins;
   const vxm_sparse_job *job;
+  vxm_chain_winding *chain; /**< NULL = none */
+  bool with_chain;          /**< in this round */
   const vxm_kernels *kernels;
   vxm_columns columns;
   int row_shift;    /**< a row of records has 2^row_shift of them */
   size_t nodes;     /**< of a strip */
   size_t first;     /**< slab of the window */
-  bool many;        /**< parts are united, or rounds */
+  bool many;        /**< parts, or a part and the chain, are united, or rounds */
   bool again;       /**< there may be something in the strips already */
   uint64_t last[4]; /**< per x: the voxels of a brick of the last node that the space has */
   scratch *scratches;
@@ -76,89 +76,41 @@ static bool reserve(sparse_state *state, scratch *d, size_t count) {
   return local.code == VXM_OK;
 }
 
-static void count_records(int shift, uint32_t (*ends)[STREAMS], const uint64_t *records, size_t count) {
-  size_t share = count / STREAMS;
-  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
-  for (size_t i = 0; i < share; i++) {
-    ends[a[i] >> shift][0]++;
-    ends[b[i] >> shift][1]++;
-    ends[c[i] >> shift][2]++;
-    ends[d[i] >> shift][3]++;
-  }
-  for (size_t i = STREAMS * share; i < count; i++)
-    ends[records[i] >> shift][0]++;
+/** The flips of the chain in a slab, as a piece. */
+static vxm_crossing_bin_piece piece_of_chain(const scratch *d) {
+  return (vxm_crossing_bin_piece){d->wound.places, d->wound.count, false};
 }
 
 /** Counts the flips of each strip; returns how many there are. */
 static size_t count_flips(const sparse_state *state, scratch *d, size_t slab) {
-  int shift = state->row_shift + 8;
-  size_t total = 0;
+  vxm_crossing_bin_piece piece = piece_of_chain(d);
   memset(d->ends, 0, state->builder->across * sizeof *d->ends);
+  size_t total = vxm_strip_flips_count(d->ends, &piece, state->row_shift, state->many);
   for (size_t w = 0; w < state->bins->workers; w++) {
     vxm_crossing_bin_reader reader =
         vxm_crossing_bin_read(vxm_crossing_bins_at(state->bins, w, 0, slab), !state->many);
-    vxm_crossing_bin_piece piece;
     while (reader.part != VXM_BIN_NONE)
-      while (vxm_crossing_bin_next(&reader, &piece)) {
-        for (size_t i = 0; i < piece.count && state->many && !piece.is_bitmap; i++)
-          d->ends[piece.data[i] >> shift][0]++;
-        if (!state->many && !piece.is_bitmap)
-          count_records(shift, d->ends, piece.data, piece.count);
-        total += piece.is_bitmap ? 0 : piece.count;
-        for (size_t i = 0; i < piece.count && piece.is_bitmap; i++) {
-          size_t flips = (size_t)vxm_popcount(piece.data[i]);
-          d->ends[64 * i >> shift][0] += (uint32_t)flips;
-          total += flips;
-        }
-      }
+      while (vxm_crossing_bin_next(&reader, &piece))
+        total += vxm_strip_flips_count(d->ends, &piece, state->row_shift, state->many);
   }
   return total;
 }
 
-/** How records of a slab become flips. */
-typedef struct decoding {
-  int row_shift;
-  uint64_t in_row;
-} decoding;
-
-static inline flip flip_of(decoding how, uint64_t record) {
-  return (flip)(record & how.in_row) << 8 | (flip)(record >> how.row_shift & 255);
-}
-
-/** Puts flips where the next ones of their strip and stream go, as count_records has counted them. */
-static void put_records(decoding how, flip *flips, uint32_t (*ends)[STREAMS], const uint64_t *records,
-                        size_t count) {
-  int shift = how.row_shift + 8;
-  size_t share = count / STREAMS;
-  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
-  for (size_t i = 0; i < share; i++) {
-    flips[ends[a[i] >> shift][0]++] = flip_of(how, a[i]);
-    flips[ends[b[i] >> shift][1]++] = flip_of(how, b[i]);
-    flips[ends[c[i] >> shift][2]++] = flip_of(how, c[i]);
-    flips[ends[d[i] >> shift][3]++] = flip_of(how, d[i]);
-  }
-  for (size_t i = STREAMS * share; i < count; i++)
-    flips[ends[records[i] >> shift][0]++] = flip_of(how, records[i]);
-}
-
-/** Puts each flip of a piece where the next one of its strip goes. */
 static void put_piece(const sparse_state *state, scratch *d, const vxm_crossing_bin_piece *piece,
-                      uint32_t part) {
-  decoding how = {state->row_shift, vxm_low_bits((unsigned)state->row_shift)};
-  if (!state->many && !piece->is_bitmap) {
-    put_records(how, d->flips, d->ends, piece->data, piece->count);
-    return;
-  }
-  for (size_t i = 0; i < piece->count; i++) {
-    uint64_t left = piece->is_bitmap ? piece->data[i] : 1;
-    for (; left; left &= left - 1) {
-      uint64_t record = piece->is_bitmap ? 64 * i + (unsigned)__builtin_ctzll(left) : piece->data[i];
-      uint32_t to = d->ends[record >> (how.row_shift + 8)][0]++;
-      d->flips[to] = flip_of(how, record);
-      if (state->many)
-        d->parts[to] = part;
-    }
-  }
+                      size_t part) {
+  vxm_strip_flips_put(d->flips, d->parts, d->ends, piece, state->row_shift, (uint32_t)part);
+}
+
+/** The flips of the chain in a slab, if it is there in this round. */
+static bool take_chain(sparse_state *state, scratch *d, size_t slab) {
+  size_t rows = state->builder->across * VXM_STRIP_VOXELS * VXM_STRIP_VOXELS;
+  d->wound.count = 0;
+  if (!state->with_chain)
+    return true;
+  vxm_status status = vxm_chain_flips_take(&d->wound, state->chain, slab, rows, state->row_shift);
+  if (status != VXM_OK)
+    atomic_store_explicit(&state->builder->failed, (int)status, memory_order_relaxed);
+  return status == VXM_OK;
 }
 
 /** Sorts the flips of a slab by strip, and by part within; false if memory ran out. */
@@ -166,11 +118,11 @@ static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
   enum { WORKERS_MAX = 256 };
   vxm_crossing_bin_reader reader[WORKERS_MAX];
   size_t workers = state->bins->workers;
-  if (!reserve(state, d, count_flips(state, d, slab)))
+  if (!take_chain(state, d, slab) || !reserve(state, d, count_flips(state, d, slab)))
     return false;
   uint32_t sum = 0;
   for (size_t s = 0; s < state->builder->across; s++)
-    for (size_t k = 0; k < STREAMS; k++) {
+    for (size_t k = 0; k < VXM_STRIP_STREAMS; k++) {
       uint32_t count = d->ends[s][k];
       d->ends[s][k] = sum;
       sum += count;
@@ -183,11 +135,14 @@ static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
     for (size_t w = 0; w < workers; w++)
       part = reader[w].part < part ? reader[w].part : part;
     if (part == VXM_BIN_NONE)
-      return true;
+      break;
     for (size_t w = 0; w < workers; w++)
       while (reader[w].part == part && vxm_crossing_bin_next(&reader[w], &piece))
         put_piece(state, d, &piece, part);
   }
+  vxm_crossing_bin_piece chain = piece_of_chain(d);
+  put_piece(state, d, &chain, state->job->part_end);
+  return true;
 }
 
 /* ---- A part of a strip ---- */
@@ -239,9 +194,9 @@ static void put_gap(sparse_state *state, scratch *d, size_t worker, size_t begin
 
 /** Flips voxels of a strip, and warnings the nodes that have flips. */
 static void flip_voxels(const strip_place *restrict places, uint64_t *restrict flipped,
-                        uint8_t *restrict has_flips, const flip *restrict flips, size_t count) {
+                        uint8_t *restrict has_flips, const vxm_strip_flip *restrict flips, size_t count) {
   for (size_t i = 0; i < count; i++) {
-    flip f = flips[i];
+    vxm_strip_flip f = flips[i];
     strip_place place = places[f & 255];
     flipped[(f >> 10) * 16 + place.row] ^= (UINT64_C(15) << (f >> 8 & 3) & 15) << place.shift;
     has_flips[f >> 12] = 1;
@@ -249,7 +204,8 @@ static void flip_voxels(const strip_place *restrict places, uint64_t *restrict f
 }
 
 /** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
-static uint64_t fold_flips(sparse_state *state, scratch *d, size_t worker, const flip *flips, size_t count) {
+static uint64_t fold_flips(sparse_state *state, scratch *d, size_t worker, const vxm_strip_flip *flips,
+                           size_t count) {
   uint64_t inside[16] = {0}, any = 0;
   size_t done = 0;
   flip_voxels(state->places, d->flipped, d->has_flips, flips, count);
@@ -309,7 +265,10 @@ static void put_united(sparse_state *state, scratch *d, size_t worker) {
   }
 }
 
+/** Notes that a part has voxels. Whether the chain adds some is not told. */
 static void touch(const sparse_state *state, uint32_t part) {
+  if (part == state->job->part_end)
+    return;
   atomic_store_explicit(&state->job->has_voxels[part], 1, memory_order_relaxed);
 }
 
@@ -342,7 +301,7 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   size_t begin = 0;
   for (size_t y = 0; y < state->builder->across; y++) {
-    size_t end = d->ends[y][STREAMS - 1];
+    size_t end = d->ends[y][VXM_STRIP_STREAMS - 1];
     if (end > begin)
       do_strip(state, d, (size_t)worker, y, state->first + task, begin, end);
     begin = end;
@@ -413,6 +372,7 @@ static void free_scratches(sparse_state *state, size_t workers) {
     vxm_free(context, d->united);
     vxm_free(context, d->has_flips);
     vxm_free(context, d->is_united);
+    vxm_chain_flips_free(&d->wound, context);
   }
   vxm_free(context, state->scratches);
 }
@@ -420,12 +380,15 @@ static void free_scratches(sparse_state *state, size_t workers) {
 /** Slabs of a window: so few that its crossings are not too many, so many that all threads have work. */
 static size_t window_slabs(const sparse_state *state) {
   vxm_context *context = state->builder->context;
-  double bound = vxm_raster_schedule_placed_bound(state->job->placed, state->columns.roles);
+  double of_chain = state->chain ? state->chain->estimate : 0;
+  double bound = vxm_raster_schedule_placed_bound(state->job->placed, state->columns.roles) + of_chain;
   double most = vxm_raster_schedule_round(context), slabs = (double)state->builder->deep;
   most = most < CROSSINGS ? most : CROSSINGS;
   double wanted = slabs * most / (bound + 1);
-  size_t least = 4 * (size_t)vxm_context_threads(context);
-  return wanted < (double)least ? least : wanted > slabs ? state->builder->deep : (size_t)wanted;
+  double least = 4 * (double)vxm_context_threads(context);
+  /* Of the chain all crossings are kept, never as bitmaps. */
+  least = fmin(least, fmax(1, slabs * vxm_raster_schedule_round(context) / (of_chain + 1)));
+  return (size_t)fmin(fmax(wanted, least), slabs);
 }
 
 /** Slabs first to end - 1. */
@@ -436,19 +399,29 @@ static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_
   state->first = first;
   state->columns.begin[2] = (int64_t)first << SLAB_SHIFT;
   state->columns.end[2] = vxm_min((int64_t)end << SLAB_SHIFT, builder->space.dims[2]);
-  vxm_status status = vxm_raster_schedule_plan(crossings, state->job->triangles, state->job->placed,
-                                               &state->columns, 1, error);
+  size_t of_chain = 0;
+  vxm_status status = VXM_OK;
+  if (state->chain)
+    status = vxm_chain_winding_steps(&of_chain, state->chain, workspace, state->job->placed, &state->columns,
+                                     error);
+  if (status == VXM_OK)
+    status = vxm_raster_schedule_plan(crossings, state->job->triangles, state->job->placed, &state->columns,
+                                      1, error);
   /* Progress goes on where the window before ended, in steps of this one. */
-  size_t steps = crossings->range_count + crossings->round_count * (end - first);
+  size_t rounds = crossings->round_count, steps = of_chain + crossings->range_count + rounds * (end - first);
   state->watch.total = (steps * builder->deep + end - first) / (end - first);
   atomic_store_explicit(&state->watch.done, steps * first / (end - first), memory_order_relaxed);
   size_t slab_words = builder->across << (state->row_shift + 8 - 6);
-  for (size_t round = 0; round < crossings->round_count && status == VXM_OK; round++) {
+  for (size_t round = 0; round < rounds && status == VXM_OK; round++) {
     status = vxm_crossing_bins_reset(state->bins, builder->workers, 1, end - first, slab_words, error);
     if (status != VXM_OK)
       break;
     vxm_raster_schedule_run(crossings, round, state->bins, &state->watch);
     status = vxm_crossing_bins_check(state->bins, error);
+    state->with_chain = state->chain && round + 1 == rounds;
+    if (state->with_chain && status == VXM_OK && state->watch.status == VXM_OK)
+      status = vxm_chain_winding_raster(state->chain, workspace, state->job->placed, &state->columns,
+                                        end - first, &state->watch, error);
     if (status != VXM_OK || state->watch.status != VXM_OK)
       break;
     state->again = round > 0;
@@ -459,14 +432,15 @@ static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_
 }
 
 vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspace, const vxm_sparse_job *job,
-                            vxm_error *error) {
+                            vxm_chain_winding *chain, vxm_error *error) {
   if (job->part_end == 0)
     return VXM_OK;
   sparse_state state = {.builder = builder,
                         .bins = &workspace->bins,
                         .job = job,
+                        .chain = chain,
                         .kernels = vxm_kernels_get(),
-                        .many = job->part_end > 1};
+                        .many = job->part_end > 1 || chain};
   shape(&state);
   vxm_status status = make_scratches(&state, builder->workers, error);
   vxm_task_progress_start(&state.watch, builder->context, "voxelizing", 1, error);

@@ -41,9 +41,8 @@ vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_cha
 
 typedef struct fold_state {
   vxm_chain_winding *out;
-  vxm_triangle_set triangles; /**< of the chain */
-  vxm_window part;            /**< slices of the window that are rastered at once */
-  int64_t first;              /**< of these, counted from the window's first one */
+  vxm_window part; /**< slices of the window that are rastered at once */
+  int64_t first;   /**< of these, counted from the window's first one */
   const vxm_kernels *kernels;
   vxm_slabs slabs;
   pthread_mutex_t mutex; /**< of `more`, `crossings` and `status` */
@@ -231,52 +230,88 @@ static vxm_status reserve(vxm_chain_winding *out, bool in_place, size_t slab_wor
   return local.code;
 }
 
+/** Triangles whose crossings are put into bins. */
+typedef struct raster_job {
+  vxm_chain_winding *out;
+  const vxm_snapped_points *placed;
+  vxm_workspace *workspace;
+  vxm_triangle_set triangles; /**< of the chain */
+  vxm_columns columns;
+} raster_job;
+
+static raster_job job_of(vxm_chain_winding *out, vxm_workspace *workspace, const vxm_snapped_points *placed,
+                         const vxm_columns *columns) {
+  raster_job job = {out, placed, workspace, {.corners = out->corners, .part = out->part}, *columns};
+  job.triangles.triangle_count = out->corner_count;
+  job.columns.roles = VXM_ROLES_ALL | VXM_ROLE_CONE; /* some cross holes, and are as long as cones may be */
+  return job;
+}
+
 /** Plans how the crossings of one kind are put into bins. */
-static vxm_status plan(const fold_state *state, vxm_columns *columns, vxm_workspace *workspace,
-                       const vxm_snapped_points *placed, int kind, vxm_error *error) {
-  const vxm_chain_winding *out = state->out;
-  *columns = vxm_columns_of(&state->part, state->part.layout.fast);
-  columns->slab_shift = state->slabs.shift;
-  columns->roles = VXM_ROLES_ALL | VXM_ROLE_CONE; /* some cross holes, and are as long as cones may be */
-  columns->triangle_begin = kind ? out->entered : 0;
-  columns->triangle_end = kind ? out->corner_count : out->entered;
-  return vxm_raster_schedule_plan(&workspace->crossings, &state->triangles, placed, columns, 1, error);
+static vxm_status plan(raster_job *job, int kind, vxm_error *error) {
+  const vxm_chain_winding *out = job->out;
+  job->columns.triangle_begin = kind ? out->entered : 0;
+  job->columns.triangle_end = kind ? out->corner_count : out->entered;
+  return vxm_raster_schedule_plan(&job->workspace->crossings, &job->triangles, job->placed, &job->columns, 1,
+                                  error);
+}
+
+vxm_status vxm_chain_winding_steps(size_t *steps, vxm_chain_winding *out, vxm_workspace *workspace,
+                                   const vxm_snapped_points *placed, const vxm_columns *columns,
+                                   vxm_error *error) {
+  raster_job job = job_of(out, workspace, placed, columns);
+  vxm_status status = VXM_OK;
+  *steps = 0;
+  for (int kind = 0; kind < 2 && status == VXM_OK; kind++) {
+    status = plan(&job, kind, error);
+    *steps += workspace->crossings.range_count;
+  }
+  return status;
 }
 
 /** Puts the crossings of one kind into bins. */
-static vxm_status raster(fold_state *state, vxm_workspace *workspace, const vxm_snapped_points *placed,
-                         int kind, vxm_error *error) {
-  vxm_chain_winding *out = state->out;
-  vxm_columns columns;
+static vxm_status raster(raster_job *job, int kind, size_t slabs, vxm_task_progress *watch,
+                         vxm_error *error) {
+  vxm_crossing_bins *bins = &job->out->bins[kind];
   /* A bin that becomes a bitmap forgets how often: never. */
   const size_t never = SIZE_MAX / 2;
-  vxm_status status = vxm_crossing_bins_reset(&out->bins[kind], (size_t)vxm_context_threads(out->context), 1,
-                                              state->slabs.count, never, error);
+  bins->context = job->out->context;
+  vxm_status status =
+      vxm_crossing_bins_reset(bins, (size_t)vxm_context_threads(job->out->context), 1, slabs, never, error);
   if (status == VXM_OK)
-    status = plan(state, &columns, workspace, placed, kind, error);
-  if (status == VXM_OK && columns.triangle_begin < columns.triangle_end)
-    vxm_raster_schedule_run(&workspace->crossings, 0, &out->bins[kind], &state->watch);
-  return status == VXM_OK ? vxm_crossing_bins_check(&out->bins[kind], error) : status;
+    status = plan(job, kind, error);
+  if (status == VXM_OK && job->columns.triangle_begin < job->columns.triangle_end)
+    vxm_raster_schedule_run(&job->workspace->crossings, 0, bins, watch);
+  return status == VXM_OK ? vxm_crossing_bins_check(bins, error) : status;
+}
+
+vxm_status vxm_chain_winding_raster(vxm_chain_winding *out, vxm_workspace *workspace,
+                                    const vxm_snapped_points *placed, const vxm_columns *columns,
+                                    size_t slabs, vxm_task_progress *watch, vxm_error *error) {
+  raster_job job = job_of(out, workspace, placed, columns);
+  vxm_status status = VXM_OK;
+  for (int kind = 0; kind < 2 && status == VXM_OK && watch->status == VXM_OK; kind++)
+    status = raster(&job, kind, slabs, watch, error);
+  return status;
 }
 
 /** Counts in some slices. */
 static vxm_status fill_part(fold_state *state, vxm_workspace *workspace, const vxm_snapped_points *placed,
                             vxm_error *error) {
-  vxm_context *context = state->out->context;
-  size_t steps = state->slabs.count;
-  vxm_columns columns;
-  vxm_status status = VXM_OK;
-  for (int kind = 0; kind < 2 && status == VXM_OK; kind++) {
-    status = plan(state, &columns, workspace, placed, kind, error);
-    steps += workspace->crossings.range_count;
-  }
-  vxm_task_progress_start(&state->watch, context, "counting crossings", steps, error);
-  for (int kind = 0; kind < 2 && status == VXM_OK && state->watch.status == VXM_OK; kind++)
-    status = raster(state, workspace, placed, kind, error);
+  vxm_chain_winding *out = state->out;
+  size_t steps;
+  vxm_columns columns = vxm_columns_of(&state->part, state->part.layout.fast);
+  columns.slab_shift = state->slabs.shift;
+  vxm_status status = vxm_chain_winding_steps(&steps, out, workspace, placed, &columns, error);
+  vxm_task_progress_start(&state->watch, out->context, "counting crossings", steps + state->slabs.count,
+                          error);
+  if (status == VXM_OK)
+    status =
+        vxm_chain_winding_raster(out, workspace, placed, &columns, state->slabs.count, &state->watch, error);
   if (status != VXM_OK)
     return status;
   if (state->watch.status == VXM_OK)
-    vxm_parallel(context, state->slabs.count, fold_slab, state);
+    vxm_parallel(out->context, state->slabs.count, fold_slab, state);
   if (state->status != VXM_OK) {
     vxm_error_pass(error, &state->error);
     return state->status;
@@ -296,12 +331,9 @@ vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspa
   out->window = *window;
   in_place &= window->slice_words == window->row_words * (size_t)window->middle_dim;
   out->window.slice_words = window->row_words * (size_t)window->middle_dim;
-  out->bins[0].context = out->bins[1].context = out->context;
   out->more_count = out->crossing_count = 0;
   int64_t depth = window->end - window->begin, slices = slices_at_once(out, depth);
   fold_state state = {.out = out, .kernels = vxm_kernels_get(), .error = VXM_ERROR_INIT};
-  state.triangles =
-      (vxm_triangle_set){.corners = out->corners, .part = out->part, .triangle_count = out->corner_count};
   state.slabs = vxm_slabs_of(slices, out->window.slice_words, vxm_context_threads(out->context));
   vxm_status status = reserve(out, in_place, state.slabs.words, error);
   if (status != VXM_OK)

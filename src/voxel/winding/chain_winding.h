@@ -65,6 +65,21 @@ vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspa
                                   vxm_error *error);
 void vxm_chain_winding_destroy(vxm_chain_winding *counted);
 
+/**
+ * Puts the crossings of triangles with columns into the bins of what is entered and of what is left, and
+ * counts nothing.
+ *
+ * @param columns along the axis of the call before, of all slabs; roles and triangles are the chain's
+ * @return VXM_OK, also where the work has been cancelled; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_chain_winding_raster(vxm_chain_winding *out, vxm_workspace *workspace,
+                                    const vxm_snapped_points *placed, const vxm_columns *columns,
+                                    size_t slabs, vxm_task_progress *watch, vxm_error *error);
+/** How many steps that takes. */
+vxm_status vxm_chain_winding_steps(size_t *steps, vxm_chain_winding *out, vxm_workspace *workspace,
+                                   const vxm_snapped_points *placed, const vxm_columns *columns,
+                                   vxm_error *error);
+
 /** The number at a voxel of a row that is marked in `counted`; `row` is a row of the window. */
 int64_t vxm_chain_winding_at(const vxm_chain_winding *counted, size_t row, int64_t voxel);
 
