@@ -117,7 +117,7 @@ static void check_slabs(vxm_context *own, int threads, size_t count, int64_t sid
     to->list[to->count++] = made[m];
   }
   vxm_meeting_slabs slabs = {.context = own};
-  assert_int_equal(vxm_meeting_slabs_sort(&slabs, found, threads, &view, &error), VXM_OK);
+  assert_int_equal(vxm_meeting_slabs_sort(&slabs, found, threads, &error), VXM_OK);
   assert_int_equal(slabs.count, count == 0                                  ? 0
                                 : count < (threads > 1 ? 1 << 13 : 1 << 17) ? 1
                                                                             : VXM_MEETING_SLABS);

@@ -50,15 +50,15 @@ static bool set_bit(const vxm_view *view, int64_t bit, bool alone) {
   return !(before & mask);
 }
 
-/** Counts a voxel that has been added. */
-static void note_added(const stage *s, vxm_meeting_slab *slab, const int64_t voxel[3]) {
+/** Notes a voxel that has been added; returns whether it counts. */
+static bool note_added(const stage *s, const int64_t voxel[3]) {
   const vxm_thin_job *job = s->job;
   const int64_t *dims = job->placed->lattice.space.dims;
   if (voxel[job->slow] < job->counted[0] || voxel[job->slow] >= job->counted[1])
-    return; /* slices around are not right */
-  slab->added++;
+    return false; /* slices around are not right */
   if (s->to->confidence)
     s->to->confidence[(voxel[2] * dims[1] + voxel[1]) * dims[0] + voxel[0]] = 255;
+  return true;
 }
 
 /** Sets what has been chosen in a slab. */
@@ -67,12 +67,15 @@ static void set_words(size_t number, int worker, void *payload) {
   const stage *s = payload;
   vxm_meeting_slab *slab = &s->slabs->slabs[number];
   const vxm_view *view = &s->job->view;
+  const bool alone = s->slabs->count == 1;
+  int64_t added = 0;
   for (size_t c = 0; c < slab->chosen; c++) {
     int64_t voxel[3];
     unpack(voxel, slab->meetings[slab->begin + c].cell);
-    if (set_bit(view, vxm_view_bit(view, voxel), s->slabs->count == 1))
-      note_added(s, slab, voxel);
+    if (set_bit(view, vxm_view_bit(view, voxel), alone))
+      added += note_added(s, voxel);
   }
+  slab->added += added;
 }
 
 /** Puts what has been chosen in a slab into a set. */
@@ -85,7 +88,9 @@ static vxm_status put_in_set(const stage *s, vxm_meeting_slab *slab, vxm_error *
     if (vxm_view_set(view, voxel))
       continue;
     status = vxm_voxel_set_add(s->to->set, (uint64_t)vxm_view_bit(view, voxel), error);
-    note_added(s, slab, voxel);
+    slab->added += note_added(s, voxel);
+    if (status == VXM_OK)
+      status = vxm_ask_at(c + 1, s->slabs->context, error);
   }
   return status;
 }

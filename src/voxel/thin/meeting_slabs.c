@@ -9,12 +9,33 @@
 typedef struct sorting {
   vxm_meeting_slabs *slabs;
   const vxm_meetings *found;
-  unsigned shift; /**< of the number of a cell's voxel, to that of its slab */
+  int threads;
+  uint64_t lowest; /**< of the numbers of cells' voxels */
+  unsigned shift;  /**< of such a number, counted from the lowest, to that of its slab */
   size_t total;
+  vxm_meeting *other; /**< room beside that of the slabs */
 } sorting;
 
+static uint64_t voxel_of(const vxm_meeting *m) {
+  return m->cell & vxm_low_bits(VXM_CELL_VOXEL_BITS);
+}
+
 static size_t slab_number(const sorting *s, const vxm_meeting *m) {
-  return (size_t)((m->cell & vxm_low_bits(VXM_CELL_VOXEL_BITS)) >> s->shift);
+  return (size_t)((voxel_of(m) - s->lowest) >> s->shift);
+}
+
+/** Equal ranges of cells, from the first to the last that is met. */
+static void choose_ranges(sorting *s) {
+  uint64_t low = UINT64_MAX, high = 0;
+  for (int w = 0; w < s->threads; w++)
+    for (size_t m = 0; m < s->found[w].count; m++) {
+      const uint64_t voxel = voxel_of(&s->found[w].list[m]);
+      low = voxel < low ? voxel : low;
+      high = voxel > high ? voxel : high;
+    }
+  s->lowest = low;
+  for (s->shift = 0; (high - low) >> s->shift >= VXM_MEETING_SLABS;)
+    s->shift++;
 }
 
 static void count_list(size_t list, int worker, void *payload) {
@@ -27,11 +48,11 @@ static void count_list(size_t list, int worker, void *payload) {
 }
 
 /** From counts to places: slab after slab, in each the lists one after the other. */
-static void place_slabs(const sorting *s, int threads) {
+static void place_slabs(const sorting *s) {
   size_t at = 0;
   for (size_t i = 0; i < VXM_MEETING_SLABS; i++) {
     size_t begin = at;
-    for (int w = 0; w < threads; w++) {
+    for (int w = 0; w < s->threads; w++) {
       size_t count = s->slabs->starts[w][i];
       s->slabs->starts[w][i] = at;
       at += count;
@@ -55,51 +76,59 @@ static void sort_slab(size_t number, int worker, void *payload) {
   (void)worker;
   const sorting *s = payload;
   vxm_meeting_slab *slab = &s->slabs->slabs[number];
-  slab->meetings = vxm_meetings_sort(slab->meetings, slab->meetings + s->total, slab->count);
+  slab->meetings =
+      vxm_meetings_sort(slab->meetings, s->other + (slab->meetings - s->slabs->room), slab->count);
 }
 
 /** A slab for each of some ranges of cells. */
-static vxm_status sort_many(sorting *s, int threads, const vxm_view *view, vxm_error *error) {
+static vxm_status sort_many(sorting *s, vxm_error *error) {
   vxm_meeting_slabs *slabs = s->slabs;
-  uint64_t cells = 1;
-  for (int a = 0; a < 3; a++)
-    cells *= (uint64_t)(view->end[a] - view->begin[a] + 2);
-  for (s->shift = 0; (cells - 1) >> s->shift >= VXM_MEETING_SLABS;)
-    s->shift++;
-  vxm_status status = vxm_renew(slabs->context, (void **)&slabs->starts, &slabs->starts_room, (size_t)threads,
+  const size_t threads = (size_t)s->threads;
+  choose_ranges(s);
+  vxm_status status = vxm_renew(slabs->context, (void **)&slabs->starts, &slabs->starts_room, threads,
                                 sizeof *slabs->starts, error);
   if (status == VXM_OK)
-    status = vxm_parallel_asked(slabs->context, (size_t)threads, count_list, s, error);
+    status = vxm_parallel_asked(slabs->context, threads, count_list, s, error);
   if (status != VXM_OK)
     return status;
-  place_slabs(s, threads);
-  status = vxm_parallel_asked(slabs->context, (size_t)threads, distribute_list, s, error);
+  place_slabs(s);
+  status = vxm_parallel_asked(slabs->context, threads, distribute_list, s, error);
   return status == VXM_OK ? vxm_parallel_asked(slabs->context, VXM_MEETING_SLABS, sort_slab, s, error)
                           : status;
 }
 
-/** All in one slab. The list of a thread that found all stays where it is. */
-static void sort_one(vxm_meeting_slabs *slabs, const vxm_meetings *found, int threads, size_t total) {
-  vxm_meeting *from = slabs->room, *to = slabs->room;
+/** All in one slab; `all` is the list of a thread that found all, or NULL. */
+static void sort_one(const sorting *s, const vxm_meetings *all) {
+  vxm_meeting_slabs *slabs = s->slabs;
   size_t at = 0;
-  for (int w = 0; w < threads; w++) {
-    if (found[w].count == total)
-      from = found[w].list;
-    else if (found[w].count > 0)
-      memcpy(slabs->room + at, found[w].list, found[w].count * sizeof *found[w].list);
-    at += found[w].count;
+  for (int w = 0; w < s->threads && !all; w++) {
+    if (s->found[w].count > 0)
+      memcpy(slabs->room + at, s->found[w].list, s->found[w].count * sizeof *slabs->room);
+    at += s->found[w].count;
   }
-  to += from == slabs->room ? total : 0;
-  slabs->slabs[0] = (vxm_meeting_slab){.meetings = vxm_meetings_sort(from, to, total), .count = total};
+  vxm_meeting *from = all ? all->list : slabs->room, *to = all ? slabs->room : s->other;
+  slabs->slabs[0] = (vxm_meeting_slab){.meetings = vxm_meetings_sort(from, to, s->total), .count = s->total};
   slabs->count = 1;
 }
 
-vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, vxm_meetings *found, int threads,
-                                  const vxm_view *view, vxm_error *error) {
+/** Room for all meetings once more, or twice unless one thread has found `all`. */
+static vxm_status make_room(sorting *s, const vxm_meetings *all, vxm_error *error) {
+  vxm_meeting_slabs *slabs = s->slabs;
+  size_t room = all ? s->total : 2 * s->total;
+  vxm_status status = VXM_OK;
+  if (room > slabs->capacity) /* a quarter more, not to grow for each that is a little larger */
+    status = vxm_renew(slabs->context, (void **)&slabs->room, &slabs->capacity, room + room / 4,
+                       sizeof *slabs->room, error);
+  s->other = all ? all->list : slabs->room + s->total; /* a list is free once it has been distributed */
+  return status;
+}
+
+vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, const vxm_meetings *found, int threads,
+                                  vxm_error *error) {
   /* Fewer are sorted sooner than taken apart; one thread gains where they do not stay in the cache. */
   const size_t many = vxm_context_threads(slabs->context) > 1 ? 1 << 13 : 1 << 17;
-  sorting s = {.slabs = slabs, .found = found};
-  bool is_one = false;
+  sorting s = {.slabs = slabs, .found = found, .threads = threads};
+  const vxm_meetings *all = NULL;
   slabs->count = 0;
   for (int w = 0; w < threads; w++) {
     if (found[w].error.code != VXM_OK) {
@@ -110,19 +139,14 @@ vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, vxm_meetings *found,
   }
   if (s.total == 0)
     return VXM_OK;
-  for (int w = 0; w < threads && s.total < many; w++)
-    is_one |= found[w].count == s.total;
-  size_t room = is_one ? s.total : 2 * s.total;
-  if (room > slabs->capacity) { /* a quarter more, not to grow for each that is a little larger */
-    vxm_status status = vxm_renew(slabs->context, (void **)&slabs->room, &slabs->capacity, room + room / 4,
-                                  sizeof *slabs->room, error);
-    if (status != VXM_OK)
-      return status;
-  }
-  if (s.total >= many)
-    return sort_many(&s, threads, view, error);
-  sort_one(slabs, found, threads, s.total);
-  return VXM_OK;
+  for (int w = 0; w < threads; w++)
+    all = found[w].count == s.total ? &found[w] : all;
+  vxm_status status = make_room(&s, all, error);
+  if (status == VXM_OK && s.total >= many)
+    return sort_many(&s, error);
+  if (status == VXM_OK)
+    sort_one(&s, all);
+  return status;
 }
 
 void vxm_meeting_slabs_destroy(vxm_meeting_slabs *slabs) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The meetings that threads have found, in the order of their cells, taken apart for the threads. */
+/** The meetings that threads have found, those of a cell side by side, taken apart for the threads. */
 #ifndef VXM_VOXEL_THIN_MEETING_SLABS_H
 #define VXM_VOXEL_THIN_MEETING_SLABS_H
 
@@ -7,7 +7,7 @@
 
 enum { VXM_MEETING_SLABS = 64 };
 
-/** All meetings of some cells, in the order of these: neighbours, for the most part. */
+/** All meetings of a range of cells, as vxm_meetings_sort has them. */
 typedef struct vxm_meeting_slab {
   vxm_meeting *meetings;
   size_t count;
@@ -19,7 +19,7 @@ typedef struct vxm_meeting_slab {
 /** Start from {.context = ...}. The memory is kept from one grid to the next. */
 typedef struct vxm_meeting_slabs {
   vxm_context *context;
-  vxm_meeting *room; /**< for all of them twice, or once where one thread has found all */
+  vxm_meeting *room; /**< for all of them, twice unless one thread has found all */
   size_t capacity;
   size_t (*starts)[VXM_MEETING_SLABS]; /**< of each thread: where its meetings of each slab go */
   size_t starts_room;
@@ -28,13 +28,13 @@ typedef struct vxm_meeting_slabs {
 } vxm_meeting_slabs;
 
 /**
- * Sorts the meetings of some threads into slabs, one where they are few. Their lists are overwritten, and
- * must stay as long as the slabs are used.
+ * Sorts the meetings of some threads into slabs, one where they are few. What is in their lists is
+ * overwritten; the lists must stay as long as the slabs are used.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, vxm_meetings *found, int threads,
-                                  const vxm_view *view, vxm_error *error);
+vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, const vxm_meetings *found, int threads,
+                                  vxm_error *error);
 
 void vxm_meeting_slabs_destroy(vxm_meeting_slabs *slabs);
 

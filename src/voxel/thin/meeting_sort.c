@@ -59,8 +59,8 @@ static int compare(const void *a, const void *b) {
 
 /** Sorts a few, by cells and polygons. */
 static void sort_few(vxm_meeting *meetings, size_t count) {
-  const size_t few = 64;
-  if (count > few) {
+  const size_t most = 64;
+  if (count > most) {
     qsort(meetings, count, sizeof *meetings, compare);
     return;
   }
@@ -73,8 +73,13 @@ static void sort_few(vxm_meeting *meetings, size_t count) {
   }
 }
 
-/** Sorts more than a few; returns which of the two lists has them. */
-static vxm_meeting *sort_many(vxm_meeting *from, vxm_meeting *to, size_t count) {
+/** The same of any number; returns which of the two lists has them. */
+static vxm_meeting *sort_by_digits(vxm_meeting *from, vxm_meeting *to, size_t count) {
+  const size_t few = 32; /* less than digits */
+  if (count <= few) {
+    sort_few(from, count);
+    return from;
+  }
   const digits d = digits_of(from, count);
   for (int place = 0; place < d.count; place++) {
     sort_by_digit(to, from, count, &d, place);
@@ -104,7 +109,7 @@ static inline size_t hash_of(const seen_cells *seen, uint64_t cell) {
   return (size_t)(cell * UINT64_C(0x9E3779B97F4A7C15) >> seen->shift);
 }
 
-/** The cells of the first stage. @param room for `count` meetings: two bits of up to sixteen for each */
+/** The cells of the first stage. @param room for `count` meetings: two maps of 8 to 16 bits for each fit */
 static seen_cells see_cells(vxm_meeting *room, const vxm_meeting *meetings, size_t count) {
   unsigned bits = 6;
   while (UINT64_C(1) << bits < 8 * count)
@@ -123,8 +128,8 @@ static seen_cells see_cells(vxm_meeting *room, const vxm_meeting *meetings, size
   return seen;
 }
 
-/** Moves links of the first stage that are met once to the front; returns how many. Of a thin plate that is
- * what there is most. */
+/** Moves links of the first stage that are met once to the front; returns how many. Of an open sheet
+ * nearly all are. */
 static size_t set_apart(vxm_meeting *meetings, vxm_meeting *room, size_t count) {
   const seen_cells seen = see_cells(room, meetings, count);
   size_t alone = 0;
@@ -140,16 +145,11 @@ static size_t set_apart(vxm_meeting *meetings, vxm_meeting *room, size_t count) 
 }
 
 vxm_meeting *vxm_meetings_sort(vxm_meeting *from, vxm_meeting *to, size_t count) {
-  const size_t few = 32, many = 1 << 10; /* less than digits; so many that it is worth to set some apart */
-  if (count <= few) {
-    sort_few(from, count);
-    return from;
-  }
+  const size_t many = 1 << 10; /* so that it is worth to set some apart */
   if (count < many)
-    return sort_many(from, to, count);
+    return sort_by_digits(from, to, count);
   const size_t alone = set_apart(from, to, count), rest = count - alone;
-  const vxm_meeting *sorted = sort_many(from + alone, to, rest);
-  if (sorted == to)
+  if (sort_by_digits(from + alone, to, rest) == to)
     memcpy(from + alone, to, rest * sizeof *to);
   return from;
 }

@@ -5,9 +5,9 @@
 #include "voxel/thin/sieve.h"
 #include "voxel/thin/sieve_kernels.h"
 
-#include <string.h>
-
 enum {
+  TASK_LEAST = 256,    /**< triangles, as a task takes its time to begin */
+  FEW_TRIANGLES = 64,  /**< for all threads: some may be large */
   TASK_MOST = 1 << 14, /**< triangles of which maps leave few */
   TASKS_PER_THREAD = 8
 };
@@ -95,11 +95,16 @@ uint64_t vxm_thin_budget(const vxm_context *context) {
   return left > most ? most : left < least_bytes ? least_bytes : left;
 }
 
+/** Meetings that a thread may find before slices are taken apart. */
+static size_t most_of(const vxm_thin_adder *thin) {
+  return (size_t)(vxm_thin_budget(thin->context) / VXM_THIN_COPIES / sizeof(vxm_meeting)) /
+         (size_t)vxm_context_threads(thin->context);
+}
+
 /** Empty lists for all threads. @param limited whether they may become full */
 static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error) {
   int threads = vxm_context_threads(thin->context);
-  size_t most =
-      (size_t)(vxm_thin_budget(thin->context) / VXM_THIN_COPIES / sizeof(vxm_meeting)) / (size_t)threads;
+  size_t most = most_of(thin);
   for (int w = 0; w < thin->threads; w++) {
     thin->found[w].count = 0;
     thin->found[w].in_cubes_count = 0;
@@ -124,18 +129,20 @@ static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error
 
 /** Triangles of a task: many where there are, as they are sifted together, and maps leave few of them. */
 static size_t task_of(const vxm_thin_adder *thin, const vxm_thin_job *job) {
-  size_t threads = (size_t)vxm_context_threads(thin->context),
-         share = count_looked_at(job) / (threads * TASKS_PER_THREAD);
-  if (threads == 1 && share < VXM_SIEVE_BATCH)
-    return VXM_SIEVE_BATCH;
-  return least(share > 0 ? share : 1, job->middles ? TASK_MOST : VXM_SIEVE_BATCH);
+  size_t count = count_looked_at(job), threads = (size_t)vxm_context_threads(thin->context),
+         share = count / (threads * TASKS_PER_THREAD);
+  if (threads > 1 && count <= FEW_TRIANGLES)
+    return share > 0 ? share : 1;
+  size_t task = least(share, job->middles ? TASK_MOST : VXM_SIEVE_BATCH),
+         smallest = threads > 1 ? TASK_LEAST : VXM_SIEVE_BATCH;
+  return task < smallest ? smallest : task;
 }
 
 /** Sets the voxels that what has been found asks for. */
 static vxm_status apply_found(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_added_voxels *to,
                               vxm_error *error) {
   thin->slabs.context = thin->context;
-  vxm_status status = vxm_meeting_slabs_sort(&thin->slabs, thin->found, thin->threads, &job->view, error);
+  vxm_status status = vxm_meeting_slabs_sort(&thin->slabs, thin->found, thin->threads, error);
   return status == VXM_OK ? vxm_add_voxels(to, job, &thin->slabs, &thin->added, error) : status;
 }
 
@@ -152,6 +159,29 @@ static vxm_status add_cubes(vxm_thin_adder *thin, search *s, const vxm_added_vox
   return status == VXM_OK ? apply_found(thin, s->job, to, error) : status;
 }
 
+/** Frees what is larger than it would be if it were limited: a slice may have that much, the others need not.
+ */
+static void release_excess(vxm_thin_adder *thin) {
+  size_t most = most_of(thin), all = VXM_THIN_COPIES * most * (size_t)thin->threads;
+  for (int w = 0; w < thin->threads; w++)
+    if (thin->found[w].capacity > 2 * most) {
+      vxm_free(thin->context, thin->found[w].list);
+      thin->found[w].list = NULL;
+      thin->found[w].capacity = thin->found[w].count = 0;
+    }
+  if (thin->slabs.capacity > all)
+    vxm_meeting_slabs_destroy(&thin->slabs);
+}
+
+/** Whether several times as many slices would do, too. */
+static bool are_few(const vxm_thin_adder *thin) {
+  size_t most = most_of(thin) / 4;
+  bool few = true;
+  for (int w = 0; w < thin->threads; w++)
+    few &= thin->found[w].count + thin->found[w].in_cubes_count <= most;
+  return few;
+}
+
 static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_added_voxels *to, bool *too_many,
                       vxm_error *error) {
   search s = {thin, job, task_of(thin, job)};
@@ -163,12 +193,17 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_added_v
     *too_many = true;
     return VXM_OK;
   }
+  thin->is_slack = are_few(thin);
   for (int w = 0; w < thin->threads; w++)
     thin->area += thin->found[w].thin_area;
   job->view.added = to->set;
   if (status == VXM_OK)
     status = apply_found(thin, job, to, error);
-  return status == VXM_OK ? add_cubes(thin, &s, to, error) : status;
+  if (status == VXM_OK)
+    status = add_cubes(thin, &s, to, error);
+  if (!too_many)
+    release_excess(thin);
+  return status;
 }
 
 /** Makes the maps where they cost less than they save, and there is memory. */

@@ -36,7 +36,8 @@ typedef struct vxm_thin_adder {
   size_t short_room;
   vxm_slice_order order;
   int64_t added;
-  int64_t area; /**< of the surface that had no voxel beside it, as vxm_meetings has it */
+  int64_t area;  /**< of the surface that had no voxel beside it, as vxm_meetings has it */
+  bool is_slack; /**< several times as many slices might have been looked at together */
 } vxm_thin_adder;
 
 /** Forgets what was found of another grid. */
@@ -67,7 +68,8 @@ vxm_status vxm_thin_find(vxm_thin_adder *thin, vxm_voxel_set *added, const vxm_s
                          int64_t end, const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                          int separating, bool *too_many, vxm_error *error);
 
-/** How often a meeting is held at most: in a list that has doubled, and on two sides of a sort. */
+/** How often a meeting is held at most: in a list that grows by a half while it is copied, and a quarter more
+ * than twice where it is sorted. */
 enum { VXM_THIN_COPIES = 2 + 3 };
 
 /** Bytes that are held at most while voxels are added to some slices, unless to one alone. */

@@ -129,6 +129,7 @@ static vxm_status find_by_slices(vxm_thin_adder *thin, vxm_voxel_set *set, const
     else if (status == VXM_OK) {
       status = put_slices(set, &found, begin, end, error);
       begin = end;
+      slices = thin->is_slack ? vxm_min(2 * slices, vxm_min(all, most)) : slices;
     }
     vxm_voxel_set_destroy(&found);
   }

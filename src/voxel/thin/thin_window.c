@@ -70,6 +70,8 @@ static vxm_status add_by_slices(vxm_thin_window *thin, const vxm_window *window,
     from.before = kept;
     copy_slices(window, &part, begin, end);
     begin = end;
+    if (thin->thin.is_slack)
+      slices = vxm_min(2 * slices, window->end - window->begin);
   }
   return status;
 }
