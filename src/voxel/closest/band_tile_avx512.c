@@ -99,10 +99,10 @@ INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, cons
   return count + (size_t)_mm_popcnt_u32(bits);
 }
 
-/** A number for each lane out of VXM_BAND_FAMILY. */
+/** A number for each lane out of FRAMES. */
 INLINE lanes lanes_pick(const double *from, const int32_t *which) {
   const __m512i index = _mm512_cvtepi32_epi64(_mm256_loadu_si256((const __m256i *)(const void *)which));
-  return (lanes)_mm512_permutexvar_pd(index, _mm512_loadu_pd(from));
+  return (lanes)_mm512_permutex2var_pd(_mm512_loadu_pd(from), index, _mm512_loadu_pd(from + 8));
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {
