@@ -9,11 +9,13 @@
 typedef struct sorting {
   vxm_meeting_slabs *slabs;
   const vxm_meetings *found;
-  int threads;
+  int threads;     /**< that have found some */
+  size_t workers;  /**< that sort */
   uint64_t lowest; /**< of the numbers of cells' voxels */
   unsigned shift;  /**< of such a number, counted from the lowest, to that of its slab */
   size_t total;
-  vxm_meeting *other; /**< room beside that of the slabs */
+  const vxm_meetings *all; /**< of a thread that has found all; NULL = there is none */
+  size_t largest;          /**< slab */
 } sorting;
 
 static uint64_t voxel_of(const vxm_meeting *m) {
@@ -48,7 +50,7 @@ static void count_list(size_t list, int worker, void *payload) {
 }
 
 /** From counts to places: slab after slab, in each the lists one after the other. */
-static void place_slabs(const sorting *s) {
+static void place_slabs(sorting *s) {
   size_t at = 0;
   for (size_t i = 0; i < VXM_MEETING_SLABS; i++) {
     size_t begin = at;
@@ -58,6 +60,7 @@ static void place_slabs(const sorting *s) {
       at += count;
     }
     s->slabs->slabs[i] = (vxm_meeting_slab){.meetings = s->slabs->room + begin, .count = at - begin};
+    s->largest = at - begin > s->largest ? at - begin : s->largest;
   }
   s->slabs->count = VXM_MEETING_SLABS;
 }
@@ -73,62 +76,67 @@ static void distribute_list(size_t list, int worker, void *payload) {
 }
 
 static void sort_slab(size_t number, int worker, void *payload) {
-  (void)worker;
   const sorting *s = payload;
   vxm_meeting_slab *slab = &s->slabs->slabs[number];
-  slab->meetings =
-      vxm_meetings_sort(slab->meetings, s->other + (slab->meetings - s->slabs->room), slab->count);
+  vxm_meeting *scratch = s->slabs->scratch + (size_t)worker * s->largest;
+  if (vxm_meetings_sort(slab->meetings, scratch, slab->count) == scratch && slab->count > 0)
+    memcpy(slab->meetings, scratch, slab->count * sizeof *scratch);
+}
+
+/** Room for so many, and a quarter more, not to grow for each that is a little larger. */
+static vxm_status make_room(vxm_context *context, vxm_meeting **room, size_t *capacity, size_t count,
+                            vxm_error *error) {
+  return count <= *capacity
+             ? VXM_OK
+             : vxm_renew(context, (void **)room, capacity, count + count / 4, sizeof **room, error);
 }
 
 /** A slab for each of some ranges of cells. */
 static vxm_status sort_many(sorting *s, vxm_error *error) {
   vxm_meeting_slabs *slabs = s->slabs;
+  vxm_context *context = slabs->context;
   const size_t threads = (size_t)s->threads;
   choose_ranges(s);
-  vxm_status status = vxm_renew(slabs->context, (void **)&slabs->starts, &slabs->starts_room, threads,
-                                sizeof *slabs->starts, error);
+  vxm_status status = make_room(context, &slabs->room, &slabs->capacity, s->total, error);
   if (status == VXM_OK)
-    status = vxm_parallel_asked(slabs->context, threads, count_list, s, error);
+    status = vxm_renew(context, (void **)&slabs->starts, &slabs->starts_room, threads, sizeof *slabs->starts,
+                       error);
+  if (status == VXM_OK)
+    status = vxm_parallel_asked(context, threads, count_list, s, error);
   if (status != VXM_OK)
     return status;
   place_slabs(s);
-  status = vxm_parallel_asked(slabs->context, threads, distribute_list, s, error);
-  return status == VXM_OK ? vxm_parallel_asked(slabs->context, VXM_MEETING_SLABS, sort_slab, s, error)
-                          : status;
+  status = make_room(context, &slabs->scratch, &slabs->scratch_room, s->workers * s->largest, error);
+  if (status == VXM_OK)
+    status = vxm_parallel_asked(context, threads, distribute_list, s, error);
+  return status == VXM_OK ? vxm_parallel_asked(context, VXM_MEETING_SLABS, sort_slab, s, error) : status;
 }
 
-/** All in one slab; `all` is the list of a thread that found all, or NULL. */
-static void sort_one(const sorting *s, const vxm_meetings *all) {
+/** All in one slab. The list of a thread that has found all stays where it is. */
+static vxm_status sort_one(const sorting *s, vxm_error *error) {
   vxm_meeting_slabs *slabs = s->slabs;
+  vxm_status status =
+      make_room(slabs->context, &slabs->room, &slabs->capacity, s->all ? s->total : 2 * s->total, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_meeting *from = s->all ? s->all->list : slabs->room, *to = slabs->room + (s->all ? 0 : s->total);
   size_t at = 0;
-  for (int w = 0; w < s->threads && !all; w++) {
+  for (int w = 0; w < s->threads && !s->all; w++) {
     if (s->found[w].count > 0)
-      memcpy(slabs->room + at, s->found[w].list, s->found[w].count * sizeof *slabs->room);
+      memcpy(from + at, s->found[w].list, s->found[w].count * sizeof *from);
     at += s->found[w].count;
   }
-  vxm_meeting *from = all ? all->list : slabs->room, *to = all ? slabs->room : s->other;
   slabs->slabs[0] = (vxm_meeting_slab){.meetings = vxm_meetings_sort(from, to, s->total), .count = s->total};
   slabs->count = 1;
-}
-
-/** Room for all meetings once more, or twice unless one thread has found `all`. */
-static vxm_status make_room(sorting *s, const vxm_meetings *all, vxm_error *error) {
-  vxm_meeting_slabs *slabs = s->slabs;
-  size_t room = all ? s->total : 2 * s->total;
-  vxm_status status = VXM_OK;
-  if (room > slabs->capacity) /* a quarter more, not to grow for each that is a little larger */
-    status = vxm_renew(slabs->context, (void **)&slabs->room, &slabs->capacity, room + room / 4,
-                       sizeof *slabs->room, error);
-  s->other = all ? all->list : slabs->room + s->total; /* a list is free once it has been distributed */
-  return status;
+  return VXM_OK;
 }
 
 vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, const vxm_meetings *found, int threads,
                                   vxm_error *error) {
+  const int workers = vxm_context_threads(slabs->context);
   /* Fewer are sorted sooner than taken apart; one thread gains where they do not stay in the cache. */
-  const size_t many = vxm_context_threads(slabs->context) > 1 ? 1 << 13 : 1 << 17;
-  sorting s = {.slabs = slabs, .found = found, .threads = threads};
-  const vxm_meetings *all = NULL;
+  const size_t many = workers > 1 ? 1 << 13 : 1 << 17;
+  sorting s = {.slabs = slabs, .found = found, .threads = threads, .workers = (size_t)workers};
   slabs->count = 0;
   for (int w = 0; w < threads; w++) {
     if (found[w].error.code != VXM_OK) {
@@ -137,20 +145,16 @@ vxm_status vxm_meeting_slabs_sort(vxm_meeting_slabs *slabs, const vxm_meetings *
     }
     s.total += found[w].count;
   }
+  for (int w = 0; w < threads; w++)
+    s.all = found[w].count == s.total ? &found[w] : s.all;
   if (s.total == 0)
     return VXM_OK;
-  for (int w = 0; w < threads; w++)
-    all = found[w].count == s.total ? &found[w] : all;
-  vxm_status status = make_room(&s, all, error);
-  if (status == VXM_OK && s.total >= many)
-    return sort_many(&s, error);
-  if (status == VXM_OK)
-    sort_one(&s, all);
-  return status;
+  return s.total < many ? sort_one(&s, error) : sort_many(&s, error);
 }
 
 void vxm_meeting_slabs_destroy(vxm_meeting_slabs *slabs) {
   vxm_free(slabs->context, slabs->room);
+  vxm_free(slabs->context, slabs->scratch);
   vxm_free(slabs->context, slabs->starts);
   *slabs = (vxm_meeting_slabs){.context = slabs->context};
 }

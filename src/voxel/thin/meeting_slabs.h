@@ -19,8 +19,10 @@ typedef struct vxm_meeting_slab {
 /** Start from {.context = ...}. The memory is kept from one grid to the next. */
 typedef struct vxm_meeting_slabs {
   vxm_context *context;
-  vxm_meeting *room; /**< for all of them, twice unless one thread has found all */
+  vxm_meeting *room; /**< for all of them; twice where they are few */
   size_t capacity;
+  vxm_meeting *scratch; /**< for a slab of each thread that sorts */
+  size_t scratch_room;
   size_t (*starts)[VXM_MEETING_SLABS]; /**< of each thread: where its meetings of each slab go */
   size_t starts_room;
   vxm_meeting_slab slabs[VXM_MEETING_SLABS];

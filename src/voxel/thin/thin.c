@@ -169,7 +169,7 @@ static void release_excess(vxm_thin_adder *thin) {
       thin->found[w].list = NULL;
       thin->found[w].capacity = thin->found[w].count = 0;
     }
-  if (thin->slabs.capacity > all)
+  if (thin->slabs.capacity + thin->slabs.scratch_room > all)
     vxm_meeting_slabs_destroy(&thin->slabs);
 }
 

@@ -68,8 +68,8 @@ vxm_status vxm_thin_find(vxm_thin_adder *thin, vxm_voxel_set *added, const vxm_s
                          int64_t end, const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                          int separating, bool *too_many, vxm_error *error);
 
-/** How often a meeting is held at most: in a list that grows by a half while it is copied, and a quarter more
- * than twice where it is sorted. */
+/** How often a meeting is held at most: in a list that grows by a half while it is copied, then once more,
+ * with a quarter to spare, where it is sorted, and in scratch for that. */
 enum { VXM_THIN_COPIES = 2 + 3 };
 
 /** Bytes that are held at most while voxels are added to some slices, unless to one alone. */
