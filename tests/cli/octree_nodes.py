@@ -30,12 +30,16 @@ def random_mesh(path, seed):
         size = draw.choice([0.02, 0.5, 1.2, 1.2])
         low = [draw.uniform(-1, 1 - size) for _ in range(3)]
         corners, faces = box(low, [x + draw.uniform(size / 3, size) for x in low])
+        patches = draw.random() < 0.3
         corners = [[x + draw.uniform(-0.1, 0.1) * size for x in c] for c in corners]
         if draw.random() < 0.3:
             faces = faces[:draw.randrange(1, len(faces))]
         lines += ["g group%d" % draw.randrange(5), "usemtl m%d" % draw.randrange(3)]
         lines += ["v %r %r %r" % tuple(c) for c in corners]
-        lines += ["f %d %d %d" % tuple(count + 1 + c for c in f) for f in faces]
+        for face in faces:
+            if patches:
+                lines.append("usemtl m%d" % draw.randrange(3))
+            lines.append("f %d %d %d" % tuple(count + 1 + c for c in face))
         count += len(corners)
     open(path, "w").write("\n".join(lines) + "\n")
 

@@ -16,6 +16,8 @@ typedef struct labels {
   vxm_label_overlaps claims;
   vxm_row_tile whole;             /**< all rows and slices */
   atomic_int_fast64_t unassigned; /**< set voxels that no label claims */
+  atomic_int_fast64_t asked;      /**< tiles with voxels that have an open label */
+  const uint8_t *open;            /**< while these are settled */
   atomic_int_fast64_t *counts;    /**< of each label, the voxels that have it */
   vxm_task_progress watch;
 } labels;
@@ -86,24 +88,68 @@ static void settle_tile(size_t task, int worker, void *payload) {
     return;
   vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
   const size_t row = (size_t)c->set.fast_dim, plane = row * (size_t)c->set.middle_dim;
-  vxm_nearest_label nearest = {c->bvh, &c->lattice.space, &c->set, nowhere, c->values, row, plane, 0};
+  vxm_nearest_label nearest = {c->bvh, &c->lattice.space, &c->set, nowhere, c->values, row, plane, 0,
+                               l->open};
   const int64_t begin[3] = {0, tile.begin[0], tile.begin[1]},
                 end[3] = {c->set.fast_dim, tile.end[0], tile.end[1]};
   vxm_nearest_label_voxels(&nearest, begin, end);
   vxm_task_progress_step(&l->watch);
 }
 
-static vxm_status settle_unassigned(labels *l, vxm_error *error) {
+/** Gives what is left of the set voxels to the nearest label. */
+static vxm_status settle(labels *l, vxm_error *error) {
   size_t tiles = vxm_row_tiles_count(&l->whole);
-  vxm_parallel(l->context, tiles, leave_tile, l);
-  if (atomic_load_explicit(&l->unassigned, memory_order_relaxed) == 0)
-    return VXM_OK;
   vxm_status status = vxm_label_overlaps_need_bvh(&l->claims, error);
   if (status != VXM_OK)
     return status;
   vxm_task_progress_start(&l->watch, l->context, "labelling", tiles, error);
   vxm_parallel(l->context, tiles, settle_tile, l);
   return vxm_task_progress_end(&l->watch);
+}
+
+static vxm_status settle_unassigned(labels *l, vxm_error *error) {
+  vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), leave_tile, l);
+  return atomic_load_explicit(&l->unassigned, memory_order_relaxed) > 0 ? settle(l, error) : VXM_OK;
+}
+
+/* ---- What open labels have ---- */
+
+/** Makes set voxels of those of a row that have an open label; returns whether there are such. */
+static bool take_row(const vxm_label_overlaps *c, int64_t middle, int64_t slow) {
+  const uint16_t *values = vxm_label_overlaps_row(c, middle, slow);
+  uint64_t *words = vxm_window_row(&c->set, middle, slow), any = 0;
+  for (int64_t begin = 0; begin < c->set.fast_dim; begin += 64) {
+    uint64_t bits = 0;
+    int64_t count = vxm_min(c->set.fast_dim - begin, 64);
+    for (int64_t i = 0; i < count; i++) {
+      uint16_t value = values[begin + i];
+      bits |= value && c->open[value - 1] ? UINT64_C(1) << i : 0;
+    }
+    words[begin / 64] = bits;
+    any |= bits;
+  }
+  return any != 0;
+}
+
+static void take_tile(size_t task, int worker, void *payload) {
+  (void)worker;
+  labels *l = payload;
+  vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
+  bool any = false;
+  for (int64_t slow = tile.begin[1]; slow < tile.end[1]; slow++)
+    for (int64_t middle = tile.begin[0]; middle < tile.end[0]; middle++)
+      any |= take_row(&l->claims, middle, slow);
+  if (any)
+    atomic_fetch_add_explicit(&l->asked, 1, memory_order_relaxed);
+}
+
+/** Near the surface open labels take voxels of each other where they have the nearest face. */
+static vxm_status settle_open(labels *l, vxm_error *error) {
+  if (!l->claims.open)
+    return VXM_OK;
+  vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), take_tile, l);
+  l->open = l->claims.open;
+  return atomic_load_explicit(&l->asked, memory_order_relaxed) > 0 ? settle(l, error) : VXM_OK;
 }
 
 /* ---- Counts ---- */
@@ -187,6 +233,8 @@ static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
   }
   if (status == VXM_OK)
     status = settle_unassigned(l, error);
+  if (status == VXM_OK)
+    status = settle_open(l, error);
   if (status == VXM_OK)
     sum_up(l, report, &sum);
   return status;
