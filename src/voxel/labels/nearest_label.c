@@ -184,6 +184,22 @@ static bool thin_out(crowd *c, const vxm_bvh_block *block, const vxm_near *neare
   return is_mixed;
 }
 
+/** Whether all voxels keep their labels: only open labels take any, and of the crowd at most one is open,
+ * which has them all. */
+static bool keeps_all(const job *j, const voxels *v, const crowd *c) {
+  const uint8_t *open = j->nearest->open;
+  uint16_t taker = 0;
+  for (size_t i = 0; i < c->count; i++) {
+    uint32_t label = c->near[i].label;
+    if (!open[label - 1] || label == taker)
+      continue;
+    if (taker)
+      return false;
+    taker = (uint16_t)label;
+  }
+  return taker == 0 || each_value(j, v, has_value, &taker);
+}
+
 /** Settles voxels, or their eighths, by a crowd that has the nearest of each of them. */
 static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
   if (!is_asked(j, v))
@@ -199,7 +215,10 @@ static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
   vxm_near nearest = look_from(j, &c, from, block.middle);
   if (is_beyond(j, &block, &nearest))
     return;
-  if (!thin_out(&c, &block, &nearest) && give_nearest(j, v, &block, &nearest))
+  bool is_mixed = thin_out(&c, &block, &nearest);
+  if (j->nearest->open && keeps_all(j, v, &c))
+    return;
+  if (!is_mixed && give_nearest(j, v, &block, &nearest))
     return;
   voxels part;
   for (int n = 0; n < 8; n++)
