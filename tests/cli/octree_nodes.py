@@ -77,6 +77,12 @@ check("in/cube.off", "-r", "40", "--bounds", "-0.1,-0.1,-0.1,0.1,0.1,0.1", "--di
 check("in/cube.off", "-r", "40", "--bounds", "-0.1,-0.1,-0.1,0.1,0.1,0.1", "--labels", "part")
 run("voxelize", "in/torus.off", "-o", "volume.nrrd", "-r", "12", "--pad", "2", "--distance", "signed", "-q")
 check("in/torus.off", "-r", "40", "--color", "volume.nrrd")
+# A cube whose nodes are all full, and of which one side has another material: full nodes have two labels.
+corners, faces = box((0, 0, 0), (1, 1, 1))
+with open("sides.obj", "w") as out:
+    out.write("".join("v %r %r %r\n" % tuple(c) for c in corners))
+    out.write("".join("usemtl m%d\nf %d %d %d\n" % (n >= 10, *(c + 1 for c in f)) for n, f in enumerate(faces)))
+check("sides.obj", "-r", "48", "--fit", "tight", "--labels", "material")
 corners, faces = box((0, 0, 0), (1, 0.7, 0.4))
 with open("colored.ply", "w") as out:
     out.write("ply\nformat ascii 1.0\nelement vertex 8\n")
