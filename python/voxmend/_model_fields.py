@@ -92,6 +92,7 @@ def labels(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
 
     Args:
         by: "part": connected components; "group": groups or named parts of the file, or nodes of a scene; "material".
+            Bodies have what they enclose; groups and materials that are patches of a surface have the voxels at it.
         others: as for `voxmend.voxelize`, which sets the same voxels.
 
     Returns:

@@ -304,7 +304,7 @@ class CoverageReport(Record):
 @dataclass(frozen=True)
 class LabelReport(Record):
     """What came of labels: `labels`, how many; `contested`, voxels that several labels claim; `unassigned`, voxels that none
-    claims, which have the nearest face's; the report of the set voxels."""
+    claims, which have the nearest face's; the report of the set voxels. Voxels near open labels are counted by who claimed them."""
 
     labels: int
     contested: int

@@ -61,9 +61,10 @@ void cli_labels_summarize(const cli_run *cli, const cli_field *field) {
   cli_row(cli, "hash", "%016" PRIx64, voxelize->hash);
   cli_row(cli, "labels",
           "%" PRId64 " by %s%s; the nearest face decides %" PRId64 " voxels that several claim, and "
-          "%" PRId64 " that none does",
+          "%" PRId64 " that none does%s",
           labels->labels, kinds[field->label_options.by],
           field->label_options.by == VXM_LABEL_PART ? ", connected pieces as in 'voxmend info'" : "",
-          labels->contested, labels->unassigned);
+          labels->contested, labels->unassigned,
+          field->label_options.by == VXM_LABEL_PART ? "" : "; and between patches of a surface");
   summarize_table(cli, field->label_table);
 }

@@ -93,7 +93,8 @@ const cli_option voxelize_options[] = {
      ".h5 or .zarr"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
-     "write which part, group or material each voxel belongs to instead, from 1 on;\n"
+     "write which part, group or material each voxel belongs to instead, from 1 on:\n"
+     "bodies fill what they enclose, patches of a surface have the voxels at it;\n"
      ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .zarr, .vdb, .octree or .binvox, with\n"
      "the names in a .json beside it; .vox, .schem, .litematic or .glb"},
     {KEY_COLOR, "color", "mesh|noise|position|part|FILE",

@@ -337,9 +337,9 @@ typedef struct vxm_label_report {
   size_t size;                   /**< as the initializer sets it, or 0 */
   vxm_voxelize_report *voxelize; /**< set by the caller: NULL, or where that of the set voxels goes */
   int64_t labels;                /**< numbered from 1 in the order of their first faces */
-  int64_t contested;  /**< voxels that several labels claim: the one with the nearest face has them */
-  int64_t unassigned; /**< voxels that none claims: they have the label of the nearest face of all.
-                         Those that vxm_thin_parts adds are among them */
+  int64_t contested;             /**< voxels that several labels claim */
+  int64_t unassigned;            /**< voxels that none claims: they have the label of the nearest face of all.
+                                    Those that vxm_thin_parts adds are among them */
 } vxm_label_report;
 
 /** Initial value of vxm_label_report. */
@@ -352,6 +352,13 @@ typedef struct vxm_label_report {
  * faces, voxelized alone as the options of the model say with VXM_MODE_SOLID, within their bounds. Of several
  * labels that claim a voxel, or of all where none does, it has the one with the face nearest to its centre;
  * among equally near ones, to seven digits, the lowest. The number of threads makes no difference.
+ *
+ * Groups and materials need not be bodies of their own. One is open if an odd number of its faces meet at an
+ * edge, as those of a patch of a surface do at its border, or if no centre is inside its faces. What an open
+ * one encloses is a guess, and it may be nothing, so at the surface the faces count: a voxel of an open
+ * label, no farther from the nearest face of all than the longest side of a voxel, has the label of that face
+ * if that is open too; where a face of its own is as near it keeps its own. Closed labels keep their voxels,
+ * and take none of others. Parts are bodies, also where they are open.
  *
  * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
  * @param report  may be NULL

@@ -30,12 +30,16 @@ def random_mesh(path, seed):
         size = draw.choice([0.02, 0.5, 1.2, 1.2])
         low = [draw.uniform(-1, 1 - size) for _ in range(3)]
         corners, faces = box(low, [x + draw.uniform(size / 3, size) for x in low])
+        patches = draw.random() < 0.3
         corners = [[x + draw.uniform(-0.1, 0.1) * size for x in c] for c in corners]
         if draw.random() < 0.3:
             faces = faces[:draw.randrange(1, len(faces))]
         lines += ["g group%d" % draw.randrange(5), "usemtl m%d" % draw.randrange(3)]
         lines += ["v %r %r %r" % tuple(c) for c in corners]
-        lines += ["f %d %d %d" % tuple(count + 1 + c for c in f) for f in faces]
+        for face in faces:
+            if patches:
+                lines.append("usemtl m%d" % draw.randrange(3))
+            lines.append("f %d %d %d" % tuple(count + 1 + c for c in face))
         count += len(corners)
     open(path, "w").write("\n".join(lines) + "\n")
 
@@ -73,6 +77,12 @@ check("in/cube.off", "-r", "40", "--bounds", "-0.1,-0.1,-0.1,0.1,0.1,0.1", "--di
 check("in/cube.off", "-r", "40", "--bounds", "-0.1,-0.1,-0.1,0.1,0.1,0.1", "--labels", "part")
 run("voxelize", "in/torus.off", "-o", "volume.nrrd", "-r", "12", "--pad", "2", "--distance", "signed", "-q")
 check("in/torus.off", "-r", "40", "--color", "volume.nrrd")
+# A cube whose nodes are all full, and of which one side has another material: full nodes have two labels.
+corners, faces = box((0, 0, 0), (1, 1, 1))
+with open("sides.obj", "w") as out:
+    out.write("".join("v %r %r %r\n" % tuple(c) for c in corners))
+    out.write("".join("usemtl m%d\nf %d %d %d\n" % (n >= 10, *(c + 1 for c in f)) for n, f in enumerate(faces)))
+check("sides.obj", "-r", "48", "--fit", "tight", "--labels", "material")
 corners, faces = box((0, 0, 0), (1, 0.7, 0.4))
 with open("colored.ply", "w") as out:
     out.write("ply\nformat ascii 1.0\nelement vertex 8\n")

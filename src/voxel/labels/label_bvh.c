@@ -28,6 +28,10 @@ static float nearness_of(double square) {
   return (float)(square + nearness_floor);
 }
 
+float vxm_nearness_at(double distance) {
+  return nearness_of(distance * distance);
+}
+
 /* ---- Triangles and boxes from a point ---- */
 
 /** What is seen of a foot; without a gradient where that is too near to have one. */
@@ -97,11 +101,17 @@ typedef struct query {
   const double *p;
   float nearness; /**< what is to be bettered */
   uint32_t label, triangle;
+  uint32_t kept; /**< as in vxm_among */
 } query;
 
-/** Whether something of this nearness in a node could be better; a node of several labels may have any. */
+/** Of equally near labels the one with the lowest rank is taken; nodes of several may have any. */
+static uint32_t rank_of(const query *q, uint32_t label) {
+  return label == q->kept ? 0 : label;
+}
+
+/** Whether something of this nearness in a node could be better. */
 static bool betters(const query *q, float nearness, uint32_t label) {
-  return nearness < q->nearness || (nearness == q->nearness && label < q->label);
+  return nearness < q->nearness || (nearness == q->nearness && rank_of(q, label) < rank_of(q, q->label));
 }
 
 static void search_leaf(query *q, const node *leaf) {
@@ -159,8 +169,8 @@ static int roots_of(const node *out[2], const vxm_label_bvh *bvh, vxm_among amon
 
 vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_among among, const double p[3],
                                const vxm_near *from) {
-  query q = {.bvh = bvh, .p = p, .nearness = INFINITY};
-  if (from && from->label) {
+  query q = {.bvh = bvh, .p = p, .nearness = from->nearness, .kept = among.kept};
+  if (from->label) {
     q.nearness = vxm_label_bvh_nearness(bvh, from->triangle, p);
     q.label = from->label;
     q.triangle = from->triangle;

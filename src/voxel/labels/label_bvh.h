@@ -31,6 +31,7 @@ uint64_t vxm_label_bvh_bytes(const vxm_face_labels *labelling);
 /** Labels that are asked about: two of them, or all where the first is 0. */
 typedef struct vxm_among {
   uint32_t label[2];
+  uint32_t kept; /**< goes before all others that are as near; 0 = the lowest label does */
 } vxm_among;
 
 /** A triangle as seen from a point. */
@@ -52,11 +53,14 @@ typedef struct vxm_bvh_block {
 /**
  * The nearest triangle to a point, and of equally near ones that with the lowest label.
  *
- * @param from what was found nearby, one of those asked about, to begin with; or NULL
+ * @param from what was found nearby, one of those asked about, to begin with; or with label 0 the nearness
+ *             that is to be bettered, and if nothing does the label is 0
  */
 vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_among among, const double p[3],
                                const vxm_near *from);
 
+/** The nearness of what is at a distance. */
+float vxm_nearness_at(double distance);
 /** The nearness of a triangle. */
 float vxm_label_bvh_nearness(const vxm_label_bvh *bvh, uint32_t triangle, const double p[3]);
 /** A triangle as seen from a point. */

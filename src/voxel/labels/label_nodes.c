@@ -2,6 +2,7 @@
 #include "voxel/labels/label_nodes.h"
 #include "voxel/labels/label_sets.h"
 #include "voxel/labels/nearest_label.h"
+#include "voxel/labels/open_labels.h"
 #include "voxel/sparse/sparse.h"
 
 #include <string.h>
@@ -24,6 +25,7 @@ struct vxm_label_nodes {
   vxm_label_sets labels;
   vxm_node_boxes boxes; /**< of these */
   vxm_label_bvh *bvh;   /**< NULL if there is one label */
+  uint8_t *open;        /**< as vxm_label_overlaps has it */
   tally *tallies;
   int workers;
 };
@@ -41,12 +43,15 @@ static uint32_t one_label(const vxm_label_nodes *n, int worker, const int64_t at
       return 0;
     found = label;
   }
-  return found != SIZE_MAX ? (uint32_t)found + 1 : 0;
+  if (found == SIZE_MAX ||
+      (n->open && n->open[found] && vxm_nearest_label_may_reach(n->bvh, n->space, at, SIDE)))
+    return 0;
+  return (uint32_t)found + 1;
 }
 
-/** Weighs a label, or with 0 all of them, against what the voxels asked about have. */
+/** Weighs a label, or with 0 all of them or the open ones, against what the voxels asked about have. */
 static void weigh(const vxm_label_nodes *n, const int64_t at[3], uint16_t *values, uint64_t asked[ROWS],
-                  uint32_t label) {
+                  uint32_t label, const uint8_t *open) {
   const vxm_window window = {.layout = VXM_LAYOUT_GRID,
                              .fast_dim = SIDE,
                              .middle_dim = SIDE,
@@ -55,7 +60,7 @@ static void weigh(const vxm_label_nodes *n, const int64_t at[3], uint16_t *value
                              .row_words = 1,
                              .slice_words = SIDE,
                              .words = asked};
-  const vxm_nearest_label nearest = {n->bvh, n->space, &window, at, values, SIDE, ROWS, label};
+  const vxm_nearest_label nearest = {n->bvh, n->space, &window, at, values, SIDE, ROWS, label, open};
   const int64_t begin[3] = {0, 0, 0};
   int64_t end[3];
   for (int a = 0; a < 3; a++)
@@ -95,7 +100,21 @@ static void settle_rest(const vxm_label_nodes *n, const int64_t at[3], uint16_t 
   }
   t->unassigned += count;
   if (count > 0 && n->bvh)
-    weigh(n, at, values, left, 0);
+    weigh(n, at, values, left, 0, NULL);
+}
+
+/** Near the surface open labels take voxels of each other. */
+static void settle_open(const vxm_label_nodes *n, const int64_t at[3], uint16_t *values,
+                        const uint64_t set[ROWS]) {
+  uint64_t asked[ROWS], any = 0;
+  for (size_t r = 0; r < ROWS; r++) {
+    asked[r] = 0;
+    for (uint64_t bits = set[r]; bits; bits &= bits - 1)
+      asked[r] |= n->open[values[SIDE * r + (size_t)__builtin_ctzll(bits)] - 1] ? bits & -bits : 0;
+    any |= asked[r];
+  }
+  if (any)
+    weigh(n, at, values, asked, 0, n->open);
 }
 
 static void count(const uint16_t *values, const uint64_t set[ROWS], tally *t) {
@@ -129,11 +148,13 @@ static bool make_node(void *payload, int worker, const int64_t at[3], void *to) 
       continue;
     for (size_t r = 0; r < ROWS; r++)
       several[r] |= solid[r];
-    weigh(n, at, values, solid, (uint32_t)label + 1);
+    weigh(n, at, values, solid, (uint32_t)label + 1, NULL);
   }
   for (size_t r = 0; r < ROWS; r++)
     t->contested += vxm_popcount(several[r]);
   settle_rest(n, at, values, set, t);
+  if (n->open)
+    settle_open(n, at, values, set);
   count(values, set, t);
   return false;
 }
@@ -179,12 +200,21 @@ static vxm_status make_tallies(vxm_label_nodes *n, vxm_error *error) {
   return local.code;
 }
 
+static vxm_status find_open(vxm_label_nodes *n, vxm_error *error) {
+  vxm_status status = vxm_open_labels_create(&n->open, n->labelling, error);
+  for (size_t label = 0; status == VXM_OK && n->open && label < n->labels.count; label++)
+    n->open[label] |= n->labels.sets[label] == NULL;
+  return status;
+}
+
 static vxm_status make(vxm_label_nodes *n, vxm_voxelize_report *voxelize, vxm_error *error) {
   const vxm_lattice lattice = vxm_lattice_of(n->space);
   vxm_status status = vxm_sparse_make(&n->voxels, voxelize, n->model, n->space, NULL, error);
   n->set = voxelize->voxels;
   if (status == VXM_OK)
     status = vxm_label_sets_create(&n->labels, n->labelling, &n->model->options, &lattice, error);
+  if (status == VXM_OK)
+    status = find_open(n, error);
   if (status == VXM_OK && n->labels.count > 1)
     status = vxm_label_bvh_create(&n->bvh, n->labelling, n->space, error);
   if (status == VXM_OK)
@@ -222,6 +252,7 @@ void vxm_label_nodes_destroy(vxm_label_nodes *n) {
   vxm_free(n->context, n->tallies);
   vxm_node_boxes_destroy(&n->boxes);
   vxm_label_bvh_destroy(n->bvh);
+  vxm_free(n->context, n->open);
   vxm_label_sets_destroy(&n->labels);
   vxm_sparse_destroy(n->voxels);
   vxm_free(n->context, n);

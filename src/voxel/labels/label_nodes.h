@@ -4,7 +4,8 @@
  * them lies, or where labels meet, are voxels looked at one by one.
  *
  * A voxel that is set has, of the labels whose solids hold it, the one with the nearest face, and of all
- * where none does: what vxm_labels_run comes to, solid after solid.
+ * where none does; then open labels take from each other near the surface: what vxm_labels_run comes to,
+ * solid after solid.
  */
 #ifndef VXM_VOXEL_LABELS_LABEL_NODES_H
 #define VXM_VOXEL_LABELS_LABEL_NODES_H

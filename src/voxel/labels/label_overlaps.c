@@ -30,6 +30,7 @@ static void list_piece(vxm_label_overlaps *c, const vxm_label_component *piece, 
   for (int a = 0; a < 3; a++)
     claim->first[a] = piece->begin[axis[a]];
   atomic_store_explicit(&claim->is_contested, false, memory_order_relaxed);
+  atomic_store_explicit(&claim->has_voxels, false, memory_order_relaxed);
   for (int a = 0; a < 2; a++) {
     c->tiles.begin[a] = vxm_min(c->tiles.begin[a], piece->begin[axis[a + 1]]);
     c->tiles.end[a] = vxm_max(c->tiles.end[a], piece->end[axis[a + 1]]);
@@ -113,9 +114,9 @@ static bool part_of(vxm_row_tile *out, const vxm_row_tile *tile, const vxm_label
 }
 
 /** A label takes the set voxels of a row of its solid that have none; what is left of the solid are those
- * that have another. Returns whether there are such. */
+ * that have another. Returns whether there are such, and notes whether the solid has voxels. */
 static bool claim_row(const vxm_label_overlaps *c, const vxm_label_overlap *claim, int64_t middle,
-                      int64_t slow) {
+                      int64_t slow, uint64_t *solids) {
   uint16_t label = (uint16_t)claim->piece->label;
   uint16_t *values =
       vxm_label_overlaps_row(c, middle + claim->first[1], slow + claim->first[2]) + claim->first[0];
@@ -124,6 +125,7 @@ static bool claim_row(const vxm_label_overlaps *c, const vxm_label_overlap *clai
   size_t place = (size_t)(row - c->set.words) + (size_t)claim->first[0] / 64;
   for (size_t w = 0; w < claim->window.row_words; w++) {
     uint64_t left = 0;
+    *solids |= solid[w];
     for (uint64_t bits = solid[w] & c->set.words[place + w]; bits; bits &= bits - 1) {
       uint16_t *value = &values[64 * w + (size_t)__builtin_ctzll(bits)];
       *value = *value ? *value : label;
@@ -143,11 +145,14 @@ static void claim_tile(size_t task, int worker, void *payload) {
   for (size_t i = 0; i < c->batch; i++) {
     vxm_label_overlap *claim = &c->claim[i];
     bool is_contested = false;
+    uint64_t solids = 0;
     if (!part_of(&part, &tile, claim))
       continue;
     for (int64_t slow = part.begin[1]; slow < part.end[1]; slow++)
       for (int64_t middle = part.begin[0]; middle < part.end[0]; middle++)
-        is_contested |= claim_row(c, claim, middle, slow);
+        is_contested |= claim_row(c, claim, middle, slow, &solids);
+    if (solids)
+      atomic_store_explicit(&claim->has_voxels, true, memory_order_relaxed);
     if (is_contested)
       atomic_store_explicit(&claim->is_contested, true, memory_order_relaxed);
   }
@@ -165,8 +170,9 @@ static void settle_tile(size_t task, int worker, void *payload) {
       continue;
     const size_t row = (size_t)c->set.fast_dim, plane = row * (size_t)c->set.middle_dim;
     uint16_t *values = vxm_label_overlaps_row(c, claim->first[1], claim->first[2]) + claim->first[0];
-    vxm_nearest_label nearest = {c->bvh, &c->lattice.space,  &claim->window, claim->first, values, row,
-                                 plane,  claim->piece->label};
+    vxm_nearest_label nearest = {
+        c->bvh, &c->lattice.space, &claim->window, claim->first, values, row, plane, claim->piece->label,
+        NULL};
     const int64_t begin[3] = {0, part.begin[0], part.begin[1]},
                   end[3] = {claim->window.fast_dim, part.end[0], part.end[1]};
     vxm_nearest_label_voxels(&nearest, begin, end);
@@ -178,8 +184,11 @@ static vxm_status claim_batch(vxm_label_overlaps *c, vxm_error *error) {
   bool is_contested = false;
   size_t tiles = vxm_row_tiles_count(&c->tiles);
   vxm_parallel(c->context, tiles, claim_tile, c);
-  for (size_t i = 0; i < c->batch; i++)
+  for (size_t i = 0; i < c->batch; i++) {
     is_contested |= atomic_load_explicit(&c->claim[i].is_contested, memory_order_relaxed);
+    if (c->held && atomic_load_explicit(&c->claim[i].has_voxels, memory_order_relaxed))
+      c->held[c->claim[i].piece->label - 1] = true;
+  }
   if (!is_contested)
     return VXM_OK;
   vxm_status status = vxm_label_overlaps_need_bvh(c, error);
@@ -198,6 +207,9 @@ vxm_status vxm_label_overlaps_need_bvh(vxm_label_overlaps *claims, vxm_error *er
 }
 
 vxm_status vxm_label_overlaps_begin(vxm_label_overlaps *claims, vxm_error *error) {
+  vxm_status status = vxm_open_labels_create(&claims->open, claims->labelling, error);
+  if (status != VXM_OK)
+    return status;
   return vxm_label_components_create(&claims->pieces, claims->labelling, claims->options, &claims->lattice,
                                      claims->set.layout.fast, error);
 }
@@ -208,13 +220,15 @@ uint64_t vxm_label_overlaps_bytes(const vxm_label_overlaps *claims) {
     uint64_t bytes = vxm_label_component_bytes(&claims->pieces, &claims->pieces.pieces[p]);
     most = bytes > most ? bytes : most;
   }
-  return words_needed(claims) * sizeof(uint64_t) + most + vxm_label_bvh_bytes(claims->labelling);
+  return words_needed(claims) * sizeof(uint64_t) + 2 * claims->labelling->table.count + most +
+         vxm_label_bvh_bytes(claims->labelling);
 }
 
 static vxm_status allocate(vxm_label_overlaps *c, vxm_error *error) {
   size_t threads = (size_t)vxm_context_threads(c->context);
   vxm_error local = VXM_ERROR_INIT;
   c->words = vxm_alloc(c->context, words_needed(c), sizeof *c->words, &local);
+  c->held = c->open ? vxm_calloc(c->context, c->labelling->table.count, sizeof *c->held, &local) : NULL;
   c->errors = vxm_calloc(c->context, threads, sizeof *c->errors, &local);
   c->scratches = vxm_calloc(c->context, threads, sizeof *c->scratches, &local);
   if (local.code != VXM_OK)
@@ -234,6 +248,8 @@ vxm_status vxm_label_overlaps_run(vxm_label_overlaps *claims, vxm_error *error) 
     if (status == VXM_OK)
       status = vxm_progress(claims->context, "labelling", (double)p / (double)claims->pieces.count, error);
   }
+  for (size_t label = 0; claims->open && label < claims->labelling->table.count && status == VXM_OK; label++)
+    claims->open[label] |= !claims->held[label];
   return status;
 }
 
@@ -243,6 +259,8 @@ void vxm_label_overlaps_end(vxm_label_overlaps *claims) {
   vxm_free(claims->context, claims->scratches);
   vxm_free(claims->context, claims->errors);
   vxm_free(claims->context, claims->words);
+  vxm_free(claims->context, claims->held);
+  vxm_free(claims->context, claims->open);
   vxm_label_bvh_destroy(claims->bvh);
   vxm_label_components_destroy(&claims->pieces);
 }

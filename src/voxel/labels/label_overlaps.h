@@ -6,6 +6,7 @@
 #include "base/task_progress.h"
 #include "voxel/labels/label_solid.h"
 #include "voxel/labels/nearest_label.h"
+#include "voxel/labels/open_labels.h"
 #include "voxel/labels/row_tiles.h"
 
 /** The solid of a piece at hand. */
@@ -13,7 +14,7 @@ typedef struct vxm_label_overlap {
   const vxm_label_component *piece;
   vxm_window window; /**< of the box: the solid, and once it has been claimed what others claimed before */
   int64_t first[3];  /**< voxel of the space at which the box begins, in the order of the layout */
-  atomic_bool is_contested;
+  atomic_bool is_contested, has_voxels;
 } vxm_label_overlap;
 
 enum { VXM_CLAIMS_BATCH = 256 };
@@ -27,6 +28,9 @@ typedef struct vxm_label_overlaps {
   vxm_window set;     /**< the voxels of the model */
   uint64_t *several;  /**< bits like those: voxels that more than one label claims */
   uint16_t *values;   /**< in the layout of the window; 0 = no label so far */
+  uint8_t *open;      /**< as vxm_open_labels_create has it, and once all claims are made also of labels whose
+                           solids have no voxel; NULL = no label is */
+  uint8_t *held;      /**< with `open`: whether the solid of a label has voxels */
   vxm_label_bvh *bvh; /**< made when first needed */
   vxm_label_components pieces;
   vxm_label_component_scratch *scratches; /**< of each thread */
@@ -39,7 +43,7 @@ typedef struct vxm_label_overlaps {
   vxm_task_progress watch;
 } vxm_label_overlaps;
 
-/** Cuts the labels into pieces; @return as vxm_label_components_create. */
+/** Finds the open labels, and cuts all into pieces; @return as vxm_label_components_create. */
 vxm_status vxm_label_overlaps_begin(vxm_label_overlaps *claims, vxm_error *error);
 /** Bytes that are held at most while claims are made, those of the BVH included. */
 uint64_t vxm_label_overlaps_bytes(const vxm_label_overlaps *claims);

@@ -16,7 +16,10 @@ typedef struct labels {
   vxm_label_overlaps claims;
   vxm_row_tile whole;             /**< all rows and slices */
   atomic_int_fast64_t unassigned; /**< set voxels that no label claims */
-  atomic_int_fast64_t *counts;    /**< of each label, the voxels that have it */
+  int64_t contested;
+  atomic_bool has_open;        /**< voxels have an open label: `claims.several` from then on */
+  const uint8_t *open;         /**< while these are settled, who takes them */
+  atomic_int_fast64_t *counts; /**< of each label, the voxels that have it */
   vxm_task_progress watch;
 } labels;
 
@@ -54,14 +57,20 @@ static void clear_tile(size_t task, int worker, void *payload) {
 
 /* ---- What no label claims ---- */
 
-/** Leaves of the set voxels of a row those without a label; returns how many. */
-static int64_t leave_row(const vxm_label_overlaps *c, int64_t middle, int64_t slow) {
+/** Leaves of the set voxels of a row those without a label, and of `several` those with an open one; returns
+ * how many are left without. */
+static int64_t leave_row(const vxm_label_overlaps *c, int64_t middle, int64_t slow, uint64_t *any_open) {
   const uint16_t *values = vxm_label_overlaps_row(c, middle, slow);
-  uint64_t *words = vxm_window_row(&c->set, middle, slow);
+  uint64_t *words = vxm_window_row(&c->set, middle, slow), *opened = c->several + (words - c->set.words);
   int64_t left = 0;
   for (size_t w = 0; w < c->set.row_words; w++) {
-    for (uint64_t bits = words[w]; bits; bits &= bits - 1)
-      words[w] ^= values[64 * w + (size_t)__builtin_ctzll(bits)] ? bits & -bits : 0;
+    opened[w] = 0;
+    for (uint64_t bits = words[w]; bits; bits &= bits - 1) {
+      uint16_t value = values[64 * w + (size_t)__builtin_ctzll(bits)];
+      words[w] ^= value ? bits & -bits : 0;
+      opened[w] |= c->open && value && c->open[value - 1] ? bits & -bits : 0;
+    }
+    *any_open |= opened[w];
     left += vxm_popcount(words[w]);
   }
   return left;
@@ -72,10 +81,13 @@ static void leave_tile(size_t task, int worker, void *payload) {
   labels *l = payload;
   vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
   int64_t left = 0;
+  uint64_t any_open = 0;
   for (int64_t slow = tile.begin[1]; slow < tile.end[1]; slow++)
     for (int64_t middle = tile.begin[0]; middle < tile.end[0]; middle++)
-      left += leave_row(&l->claims, middle, slow);
+      left += leave_row(&l->claims, middle, slow, &any_open);
   atomic_fetch_add_explicit(&l->unassigned, left, memory_order_relaxed);
+  if (any_open)
+    atomic_store_explicit(&l->has_open, true, memory_order_relaxed);
 }
 
 static void settle_tile(size_t task, int worker, void *payload) {
@@ -86,24 +98,41 @@ static void settle_tile(size_t task, int worker, void *payload) {
     return;
   vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
   const size_t row = (size_t)c->set.fast_dim, plane = row * (size_t)c->set.middle_dim;
-  vxm_nearest_label nearest = {c->bvh, &c->lattice.space, &c->set, nowhere, c->values, row, plane, 0};
+  vxm_window asked = c->set;
+  asked.words = l->open ? c->several : c->set.words;
+  vxm_nearest_label nearest = {c->bvh, &c->lattice.space, &asked, nowhere, c->values, row, plane, 0, l->open};
   const int64_t begin[3] = {0, tile.begin[0], tile.begin[1]},
                 end[3] = {c->set.fast_dim, tile.end[0], tile.end[1]};
   vxm_nearest_label_voxels(&nearest, begin, end);
   vxm_task_progress_step(&l->watch);
 }
 
-static vxm_status settle_unassigned(labels *l, vxm_error *error) {
+/** Gives what is left of the set voxels, or those with an open label, to the nearest label. */
+static vxm_status settle(labels *l, vxm_error *error) {
   size_t tiles = vxm_row_tiles_count(&l->whole);
-  vxm_parallel(l->context, tiles, leave_tile, l);
-  if (atomic_load_explicit(&l->unassigned, memory_order_relaxed) == 0)
-    return VXM_OK;
   vxm_status status = vxm_label_overlaps_need_bvh(&l->claims, error);
   if (status != VXM_OK)
     return status;
   vxm_task_progress_start(&l->watch, l->context, "labelling", tiles, error);
   vxm_parallel(l->context, tiles, settle_tile, l);
   return vxm_task_progress_end(&l->watch);
+}
+
+static vxm_status settle_unassigned(labels *l, vxm_error *error) {
+  for (size_t w = 0; w < grid_words(l); w++)
+    l->contested += vxm_popcount(l->claims.several[w]);
+  vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), leave_tile, l);
+  return atomic_load_explicit(&l->unassigned, memory_order_relaxed) > 0 ? settle(l, error) : VXM_OK;
+}
+
+/* ---- What open labels have ---- */
+
+/** Near the surface open labels take voxels of each other where they have the nearest face. */
+static vxm_status settle_open(labels *l, vxm_error *error) {
+  if (!atomic_load_explicit(&l->has_open, memory_order_relaxed))
+    return VXM_OK;
+  l->open = l->claims.open;
+  return settle(l, error);
 }
 
 /* ---- Counts ---- */
@@ -146,8 +175,7 @@ static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
     table->voxels[label] = atomic_load_explicit(&l->counts[label], memory_order_relaxed);
   *report = (vxm_label_report){.voxelize = report->voxelize, .labels = (int64_t)table->count};
   report->unassigned = atomic_load_explicit(&l->unassigned, memory_order_relaxed);
-  for (size_t w = 0; w < grid_words(l); w++)
-    report->contested += vxm_popcount(l->claims.several[w]);
+  report->contested = l->contested;
   vxm_model_report(l->pass, report->voxelize, sum->count, sum->hash);
   vxm_labels_warn(l->labelling, sum->count, l->pass->warnings);
 }
@@ -187,6 +215,8 @@ static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
   }
   if (status == VXM_OK)
     status = settle_unassigned(l, error);
+  if (status == VXM_OK)
+    status = settle_open(l, error);
   if (status == VXM_OK)
     sum_up(l, report, &sum);
   return status;

@@ -9,6 +9,7 @@
  *     set voxels of that solid: those without a label take it; the others are contested
  *     contested voxels             the label there or this one, whichever has the nearer face
  *   set voxels that no solid holds -> the label of the nearest face of all
+ *   near the surface, of voxels of open labels (open_labels.h) -> the same, if that is open too
  *
  * The solids of labels are made on the lattice of the whole space, so that they meet its voxels as the model
  * does. Of several labels that claim a voxel the one with the nearest face is left in the end, the lowest on

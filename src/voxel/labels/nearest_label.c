@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+/** More than what rounds in distances. */
+static const float slack = 1e-3F;
+
 enum {
   BLOCK = 16, /**< voxels along an edge of the blocks to begin with: a part of a word */
   CROWD = 256 /**< triangles looked at for a block; where there are more it is cut first */
@@ -64,9 +67,18 @@ static inline bool same_value(uint16_t *value, void *payload) {
   return *first == *value;
 }
 
+static inline bool has_value(uint16_t *value, void *payload) {
+  return *value == *(const uint16_t *)payload;
+}
+
 static void give(const job *j, const voxels *v, uint32_t label) {
   uint16_t value = (uint16_t)label;
   each_value(j, v, set_value, &value);
+}
+
+/** The label of a single voxel, which goes before others that are as near where labels are open. */
+static uint32_t kept_label(const job *j, const voxels *v) {
+  return j->nearest->open ? *value_at(j, v->at[0], v->at[1], v->at[2]) : 0;
 }
 
 /** One of the eighths; false if it is empty. */
@@ -106,18 +118,45 @@ typedef struct crowd {
   vxm_near near[CROWD];
 } crowd;
 
-/** The nearest label of a crowd to a single point. */
-static uint32_t nearest_label(const job *j, const crowd *c, const double p[3]) {
-  float least = INFINITY;
-  uint32_t label = 0;
+/** The nearest of a crowd to a single point; of equally near ones it has the label `kept`, or the lowest. */
+static vxm_near nearest_of(const job *j, const crowd *c, const double p[3], uint32_t kept) {
+  vxm_near nearest = {.nearness = INFINITY};
   for (size_t i = 0; i < c->count; i++) {
-    float nearness = vxm_label_bvh_nearness(j->nearest->bvh, c->near[i].triangle, p);
-    if (nearness > least || (nearness == least && c->near[i].label >= label))
+    const vxm_near *near = &c->near[i];
+    float nearness = vxm_label_bvh_nearness(j->nearest->bvh, near->triangle, p);
+    if (nearness > nearest.nearness ||
+        (nearness == nearest.nearness &&
+         (nearest.label == kept || (near->label != kept && near->label >= nearest.label))))
       continue;
-    least = nearness;
-    label = c->near[i].label;
+    nearest.nearness = nearness;
+    nearest.label = near->label;
   }
-  return label;
+  return nearest;
+}
+
+/* ---- Where labels are open ---- */
+
+/** A nearness that all have that are no farther than the longest side of a voxel from voxels of a block. */
+static float reach_nearness(const vxm_bvh_block *block) {
+  return block->reach == 0 ? vxm_nearness_at(1) : vxm_nearness_at(1 + block->reach + (double)slack);
+}
+
+/** Whether there is nothing to give: all faces are too far from all voxels. */
+static bool is_beyond(const job *j, const vxm_bvh_block *block, const vxm_near *nearest) {
+  return j->nearest->open && (nearest->label == 0 || nearest->nearness > reach_nearness(block));
+}
+
+/** Gives the one label that is the nearest in a block; false if the block has to be cut, as it is too far for
+ * some voxels only. */
+static bool give_nearest(const job *j, const voxels *v, const vxm_bvh_block *block, const vxm_near *nearest) {
+  const uint8_t *open = j->nearest->open;
+  uint16_t value = (uint16_t)nearest->label;
+  if (open && (!open[nearest->label - 1] || each_value(j, v, has_value, &value)))
+    return true;
+  if (open && block->reach > 0 && (double)(nearest->distance + slack) + block->reach > 1)
+    return false;
+  give(j, v, nearest->label);
+  return true;
 }
 
 /** Looks at a crowd from another point, and finds the nearest; which of several makes no difference. */
@@ -145,21 +184,42 @@ static bool thin_out(crowd *c, const vxm_bvh_block *block, const vxm_near *neare
   return is_mixed;
 }
 
+/** Whether all voxels keep their labels: only open labels take any, and of the crowd at most one is open,
+ * which has them all. */
+static bool keeps_all(const job *j, const voxels *v, const crowd *c) {
+  const uint8_t *open = j->nearest->open;
+  uint16_t taker = 0;
+  for (size_t i = 0; i < c->count; i++) {
+    uint32_t label = c->near[i].label;
+    if (!open[label - 1] || label == taker)
+      continue;
+    if (taker)
+      return false;
+    taker = (uint16_t)label;
+  }
+  return taker == 0 || each_value(j, v, has_value, &taker);
+}
+
 /** Settles voxels, or their eighths, by a crowd that has the nearest of each of them. */
 static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
   if (!is_asked(j, v))
     return;
   vxm_bvh_block block = block_of(j, v);
   if (block.reach == 0) {
-    give(j, v, nearest_label(j, from, block.middle));
+    vxm_near nearest = nearest_of(j, from, block.middle, kept_label(j, v));
+    if (!is_beyond(j, &block, &nearest))
+      give_nearest(j, v, &block, &nearest);
     return;
   }
   crowd c;
   vxm_near nearest = look_from(j, &c, from, block.middle);
-  if (!thin_out(&c, &block, &nearest)) {
-    give(j, v, nearest.label);
+  if (is_beyond(j, &block, &nearest))
     return;
-  }
+  bool is_mixed = thin_out(&c, &block, &nearest);
+  if (j->nearest->open && keeps_all(j, v, &c))
+    return;
+  if (!is_mixed && give_nearest(j, v, &block, &nearest))
+    return;
   voxels part;
   for (int n = 0; n < 8; n++)
     if (eighth(&part, v, n))
@@ -170,11 +230,14 @@ static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
 static bool settle_among(const job *j, const voxels *v, vxm_among among, vxm_near *nearest) {
   const vxm_label_bvh *bvh = j->nearest->bvh;
   vxm_bvh_block block = block_of(j, v);
+  if (j->nearest->open && nearest->label == 0)
+    nearest->nearness = nextafterf(reach_nearness(&block), INFINITY);
   *nearest = vxm_label_bvh_nearest(bvh, among, block.middle, nearest);
-  if (block.reach == 0 || !vxm_label_bvh_has_other(bvh, among, &block, nearest)) {
-    give(j, v, nearest->label);
+  if (is_beyond(j, &block, nearest))
     return true;
-  }
+  if ((block.reach == 0 || !vxm_label_bvh_has_other(bvh, among, &block, nearest)) &&
+      give_nearest(j, v, &block, nearest))
+    return true;
   crowd c;
   c.count = vxm_label_bvh_list(bvh, among, &block, nearest, c.near, CROWD);
   if (c.count > CROWD)
@@ -191,13 +254,15 @@ static void settle(const job *j, const voxels *v, vxm_near nearest) {
   static const vxm_near nothing = {.nearness = INFINITY};
   uint16_t held = 0;
   uint32_t label = j->nearest->label;
-  vxm_among among = {{0, 0}};
+  vxm_among among = {{0, 0}, 0};
   if (!is_asked(j, v))
     return;
+  if (j->nearest->open && v->size[0] * v->size[1] * v->size[2] == 1)
+    among.kept = kept_label(j, v);
   /* Where the label is weighed against that of the voxels, these must all have the same. */
   bool is_one = label == 0 || each_value(j, v, same_value, &held);
   if (label) {
-    among = (vxm_among){{held, label}};
+    among = (vxm_among){{held, label}, 0};
     nearest = nothing;
   }
   if (is_one && settle_among(j, v, among, &nearest))
@@ -225,4 +290,21 @@ void vxm_nearest_label_voxels(const vxm_nearest_label *nearest, const int64_t be
           v.size[a] = vxm_min(end[a] - v.at[a], BLOCK);
         settle(&j, &v, (vxm_near){.nearness = INFINITY});
       }
+}
+
+bool vxm_nearest_label_may_reach(const vxm_label_bvh *bvh, const vxm_space *space, const int64_t at[3],
+                                 int64_t side) {
+  const vxm_among all = {{0, 0}, 0};
+  const double *size = space->voxel_size;
+  double longest = fmax(size[0], fmax(size[1], size[2]));
+  vxm_bvh_block block;
+  double reach2 = 0;
+  for (int a = 0; a < 3; a++) {
+    double step = size[a] / longest, half = (double)(side - 1) / 2 * step;
+    block.middle[a] = ((double)at[a] + (double)side / 2) * step;
+    reach2 += half * half;
+  }
+  block.reach = sqrt(reach2);
+  vxm_near bound = {.nearness = nextafterf(reach_nearness(&block), INFINITY)};
+  return vxm_label_bvh_nearest(bvh, all, block.middle, &bound).label != 0;
 }

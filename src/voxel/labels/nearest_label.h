@@ -16,6 +16,9 @@ typedef struct vxm_nearest_label {
   size_t row, plane;       /**< values from one row, or slice, to the next */
   uint32_t label;          /**< takes a voxel where it is nearer than the label there; 0 = the nearest of all
                                 labels takes it, whatever is there */
+  const uint8_t *open;     /**< with label 0: NULL, or a flag for each label. Then the nearest of all takes a
+                                voxel only if it has the flag, is nearer than the label there, and no farther
+                                than the longest side of a voxel */
 } vxm_nearest_label;
 
 /**
@@ -26,5 +29,9 @@ typedef struct vxm_nearest_label {
  * @param begin the first a multiple of 16
  */
 void vxm_nearest_label_voxels(const vxm_nearest_label *nearest, const int64_t begin[3], const int64_t end[3]);
+
+/** Whether a face may be no farther than the longest side of a voxel from some of the voxels of a cube. */
+bool vxm_nearest_label_may_reach(const vxm_label_bvh *bvh, const vxm_space *space, const int64_t at[3],
+                                 int64_t side);
 
 #endif
