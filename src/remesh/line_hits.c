@@ -137,6 +137,7 @@ typedef struct search {
   /** Faces that lie on the empty centre next to a run count only where no other one is on that link: they
    * may be those of a body beyond a gap. So all others are looked at first. */
   bool at_neighbours;
+  bool seen_some; /**< of those */
 } search;
 
 /** A hit at the centre beside a run. @return whether the run wants it */
@@ -149,7 +150,7 @@ static bool is_wanted(const vxm_line_hits *hits, uint64_t key, const run *r, boo
 }
 
 /** Gives a hit to the run that a set voxel beside it belongs to. */
-static vxm_status give(const search *s, const line *l, int64_t voxel, const hit *h, vxm_error *error) {
+static vxm_status give(search *s, const line *l, int64_t voxel, const hit *h, vxm_error *error) {
   const vxm_grid *solid = s->hits->solid;
   run r = run_of(solid, l, voxel);
   double at = (double)h->at;
@@ -164,6 +165,7 @@ static vxm_status give(const search *s, const line *l, int64_t voxel, const hit 
   }
   bool above = at > (double)r.last + 1 - NEAR, below = at < (double)r.first - 1 + NEAR;
   uint64_t key = key_of(solid, l, end ? r.last : r.first, end);
+  s->seen_some |= above || below;
   if ((above || below) != s->at_neighbours)
     return VXM_OK;
   if ((above || below) && !is_wanted(s->hits, key, &r, above, at))
@@ -171,7 +173,7 @@ static vxm_status give(const search *s, const line *l, int64_t voxel, const hit 
   return take(s->hits, key, h, error);
 }
 
-static vxm_status add_hit(const search *s, const line *l, const hit *h, vxm_error *error) {
+static vxm_status add_hit(search *s, const line *l, const hit *h, vxm_error *error) {
   const int64_t begin = (int64_t)floor((double)h->at - NEAR), end = (int64_t)floor((double)h->at + NEAR) + 1;
   vxm_status status = VXM_OK;
   run last = {0, INT64_MIN, false};
@@ -185,7 +187,7 @@ static vxm_status add_hit(const search *s, const line *l, const hit *h, vxm_erro
 }
 
 /** The lines along an axis that a triangle meets, in a row of them: those between two points of its edges. */
-static vxm_status add_row(const search *s, const double p[3][3], line *l, hit h, vxm_error *error) {
+static vxm_status add_row(search *s, const double p[3][3], line *l, hit h, vxm_error *error) {
   const int a = l->axis, b = (a + 1) % 3, c = (a + 2) % 3;
   const double row = (double)l->at[c];
   const int64_t *dims = s->hits->solid->space.dims;
@@ -216,7 +218,7 @@ static vxm_status add_row(const search *s, const double p[3][3], line *l, hit h,
   return status;
 }
 
-static vxm_status add_triangle(const search *s, const double p[3][3], vxm_error *error) {
+static vxm_status add_triangle(search *s, const double p[3][3], vxm_error *error) {
   double u[3], v[3], n[3];
   for (int a = 0; a < 3; a++) {
     u[a] = p[1][a] - p[0][a];
@@ -243,7 +245,7 @@ static vxm_status add_triangle(const search *s, const double p[3][3], vxm_error 
   return status;
 }
 
-static vxm_status add_triangles(const search *s, vxm_error *error) {
+static vxm_status add_triangles(search *s, vxm_error *error) {
   const vxm_soup *soup = s->surface->soup;
   const vxm_space *space = &s->hits->solid->space;
   vxm_status status = VXM_OK;
@@ -271,7 +273,7 @@ vxm_status vxm_line_hits_create(vxm_line_hits **out, const vxm_soup *soup, const
     vxm_surface_make(&surface, solid->context, soup, &local);
   }
   search s = {.hits = hits, .surface = surface};
-  if (surface && add_triangles(&s, &local) == VXM_OK) {
+  if (surface && add_triangles(&s, &local) == VXM_OK && s.seen_some) {
     s.at_neighbours = true;
     add_triangles(&s, &local);
   }
