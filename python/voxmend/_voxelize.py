@@ -93,7 +93,8 @@ def remesh(mesh: MeshLike, resolution: Optional[int] = None, *, pitch: Optional[
         mesh: as for `voxelize`.
         resolution: voxels along the longest side; 128 if no size is given.
         pitch, voxel_size: side of a voxel in model units, one number or three. Either stands for the other here.
-        thin: as for `voxelize`; thin parts come out two thirds of a voxel thick or more.
+        thin: as for `voxelize`; plates and walls come out whole, two thirds of a voxel thick
+            or more. 'keep' and '26' are the same here.
         repair: repair the mesh first.
         progress, timeout: as for `voxmend.watch`.
     """

@@ -187,13 +187,7 @@ static int take_grid_option(cli_run *cli, batch_wish *out, int key, const char *
 
 /** A picture for each slice is no file of a grid. */
 static cli_formats grid_formats(void) {
-  cli_formats formats = cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_COLORS);
-  int kept = 0;
-  for (int f = 0; formats.name[f]; f++)
-    if (strcmp(formats.name[f], "png") != 0)
-      formats.name[kept++] = formats.name[f];
-  formats.name[kept] = NULL;
-  return formats;
+  return cli_formats_without(cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_COLORS), "png");
 }
 
 static int read_format(cli_run *cli, const char *value) {

@@ -179,6 +179,8 @@ typedef struct cli_formats {
 } cli_formats;
 /** Those with one of these traits (vxm_format_trait). */
 cli_formats cli_formats_with(unsigned traits);
+/** These but one. */
+cli_formats cli_formats_without(cli_formats formats, const char *name);
 /** Whether a file of this format has a .json beside it. */
 bool cli_has_json(const char *format, bool may_be_labels);
 /** Whether a file name ends in '.' and this extension, in any case. */

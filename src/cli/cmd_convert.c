@@ -266,7 +266,7 @@ const cli_command cli_command_convert = {
         "  voxmend convert chair.binvox -o chair.npy\n"
         "  voxmend convert chair.npy -o blocks.obj\n"
         "  voxmend convert distance.nrrd -o distance.vdb\n"
-        "  voxmend convert distance.nrrd --below 0 -o solid.binvox\n"
+        "  voxmend convert distance.nrrd --below 0 -o centres.binvox\n"
         "  voxmend convert city.octree --window 0:512,0:512,0:64 -o corner.npy\n"
         "  voxmend convert city.octree --coverage 64 -o overview.nrrd",
     .options = known_options,

@@ -14,8 +14,9 @@ static const cli_option known_options[] = {
     {'r', "resolution", "N", "voxels along the longest side of the model [128]"},
     {KEY_SIZE, "voxel-size", "S|SX,SY,SZ", "sides of a voxel in model units, instead of -r"},
     {KEY_THIN, "thin", "keep|drop|26",
-     "parts thinner than a voxel: as in 'voxmend voxelize'; those that are kept\n"
-     "come out two thirds of a voxel thick or more [keep]"},
+     "parts thinner than a voxel: those that are kept come out whole, plates and\n"
+     "walls two thirds of a voxel thick or more; keep and 26 are the same here\n"
+     "[keep]"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
@@ -171,7 +172,7 @@ const cli_command cli_command_remesh = {
     .summary = "a closed surface around all of a mesh, at a resolution",
     .notes =
         "The mesh is repaired and voxelized as by 'voxmend voxelize', and the surface of the solid is made\n"
-        "anew, where the distances to the mesh say that it lies: closed, manifold and turned outward, "
+        "anew, where the faces meet the lines through voxel centres: closed, manifold and turned outward, "
         "smooth\n"
         "where the mesh is, with edges and corners cut by half a voxel at most. Groups and materials do not "
         "go\n"

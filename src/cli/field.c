@@ -7,9 +7,11 @@
 #include <string.h>
 
 cli_formats cli_field_formats(const cli_field *field) {
-  return cli_formats_with(field->color    ? VXM_FORMAT_COLORS
-                          : field->labels ? VXM_FORMAT_LABELS
-                                          : VXM_FORMAT_NUMBERS);
+  cli_formats formats = cli_formats_with(field->color    ? VXM_FORMAT_COLORS
+                                         : field->labels ? VXM_FORMAT_LABELS
+                                                         : VXM_FORMAT_NUMBERS);
+  bool is_float = field->distance || (field->coverage && field->coverage_options.scalar == VXM_FLOAT32);
+  return is_float ? cli_formats_without(formats, "png") : formats; /* which holds whole numbers */
 }
 
 bool cli_field_wanted(const cli_field *field) {

@@ -36,6 +36,15 @@ cli_formats cli_formats_with(unsigned traits) {
   return found;
 }
 
+cli_formats cli_formats_without(cli_formats formats, const char *name) {
+  int kept = 0;
+  for (int f = 0; formats.name[f]; f++)
+    if (strcmp(formats.name[f], name) != 0)
+      formats.name[kept++] = formats.name[f];
+  formats.name[kept] = NULL;
+  return formats;
+}
+
 /* ---- Help ---- */
 
 enum { HELP_COLUMN = 30 };

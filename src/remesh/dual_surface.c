@@ -19,11 +19,11 @@ struct vxm_dual_surface {
   vxm_soup *soup;
   vxm_space space;
   size_t nx, ny, row_words;
-  int64_t slices;     /**< that were put in */
-  uint64_t *bits[2];  /**< of the last slice and the one before it */
-  float *values[2];   /**< the same */
-  around *flat[2][2]; /**< of the links along x and y in these slices, by the centre they begin at */
-  around *upright;    /**< of the links between them */
+  int64_t slices;        /**< that were put in */
+  uint64_t *bits[2];     /**< of the last slice and the one before it */
+  float (*shares[2])[3]; /**< of the links that begin in these slices */
+  around *flat[2][2];    /**< of the links along x and y in these slices, by the centre they begin at */
+  around *upright;       /**< of the links between them */
   vxm_cell_cycles cycles[VXM_CELL_CONFIGURATIONS];
   bool meets_itself;
 };
@@ -43,7 +43,7 @@ static void release(vxm_context *context, vxm_dual_surface *s) {
   for (int k = 0; k < 2; k++) {
     for (int a = 0; a < 2; a++)
       vxm_free(context, s->flat[k][a]);
-    vxm_free(context, s->values[k]);
+    vxm_free(context, s->shares[k]);
     vxm_free(context, s->bits[k]);
   }
   vxm_soup_destroy(s->soup);
@@ -64,8 +64,8 @@ vxm_status vxm_dual_surface_create(vxm_dual_surface **out, vxm_context *context,
     bool room = true;
     for (int k = 0; k < 2 && room; k++) {
       s->bits[k] = vxm_alloc(context, s->row_words * s->ny, sizeof *s->bits[k], &local);
-      s->values[k] = s->bits[k] ? vxm_alloc(context, area, sizeof *s->values[k], &local) : NULL;
-      for (int a = 0; a < 2 && s->values[k]; a++)
+      s->shares[k] = s->bits[k] ? vxm_alloc(context, area, sizeof *s->shares[k], &local) : NULL;
+      for (int a = 0; a < 2 && s->shares[k]; a++)
         s->flat[k][a] = vxm_alloc(context, area, sizeof *s->flat[k][a], &local);
       room = local.code == VXM_OK;
     }
@@ -95,21 +95,6 @@ vxm_soup *vxm_dual_surface_take(vxm_dual_surface *s, bool *meets_itself) {
 
 /* ---- Vertices ---- */
 
-/** How far a centre is from the surface where the bits have it on the one side: half a voxel where they do
- * not go by its value, as in walls thinner than a voxel. */
-static double away(const vxm_dual_surface *s, double value, bool set) {
-  const double *size = s->space.voxel_size;
-  bool agrees = (signbit(value) != 0) == set; /* on the surface -0 is inside */
-  return agrees ? fabs(value) : 0.5 * fmax(size[0], fmax(size[1], size[2]));
-}
-
-/** Where on a link, counted from its beginning, the surface is. */
-static double crossing(const vxm_dual_surface *s, const size_t at[2], const int slice[2], bool begin_set) {
-  double begin = away(s, s->values[slice[0]][at[0]], begin_set);
-  double end = away(s, s->values[slice[1]][at[1]], !begin_set);
-  return fmin(fmax(begin / (begin + end), AWAY), 1 - AWAY);
-}
-
 /** Where the vertices of a cell are kept for a link of it: in which the cell is on the far side of where the
  * link is near, and the other way. */
 static around *around_link(vxm_dual_surface *s, int link, size_t i, size_t j) {
@@ -126,13 +111,12 @@ static vxm_status add_vertices(vxm_dual_surface *s, size_t i, size_t j, unsigned
   for (int link = 0; link < VXM_CELL_LINKS; link++) {
     if (c->cycle[link] == VXM_NO_CYCLE)
       continue;
-    int p = vxm_cell_link_begin(link), q = vxm_cell_link_end(link), axis = link / 4;
+    int p = vxm_cell_link_begin(link), axis = link / 4;
     double *at = sum[c->cycle[link]];
     for (int a = 0; a < 3; a++)
       at[a] += p >> a & 1;
-    const size_t ends[2] = {centre(s, i + (size_t)(p & 1), j + (size_t)(p >> 1 & 1)),
-                            centre(s, i + (size_t)(q & 1), j + (size_t)(q >> 1 & 1))};
-    at[axis] += crossing(s, ends, (const int[2]){p >> 2, q >> 2}, set >> p & 1);
+    double share = (double)s->shares[p >> 2][centre(s, i + (size_t)(p & 1), j + (size_t)(p >> 1 & 1))][axis];
+    at[axis] += fmin(fmax(share, AWAY), 1 - AWAY);
     count[c->cycle[link]]++;
     (*around_link(s, link, i, j))[3 - link % 4] = (uint32_t)(s->soup->vertex_count + c->cycle[link]);
   }
@@ -231,11 +215,11 @@ static vxm_status add_faces(vxm_dual_surface *s, int slice, bool upward, vxm_err
 
 static void exchange(vxm_dual_surface *s) {
   uint64_t *bits = s->bits[0];
-  float *values = s->values[0];
+  float(*shares)[3] = s->shares[0];
   s->bits[0] = s->bits[1];
   s->bits[1] = bits;
-  s->values[0] = s->values[1];
-  s->values[1] = values;
+  s->shares[0] = s->shares[1];
+  s->shares[1] = shares;
   for (int a = 0; a < 2; a++) {
     around *links = s->flat[0][a];
     s->flat[0][a] = s->flat[1][a];
@@ -257,12 +241,12 @@ static void clear_border(vxm_dual_surface *s) {
   }
 }
 
-vxm_status vxm_dual_surface_put(vxm_dual_surface *s, const uint64_t *bits, const float *values,
+vxm_status vxm_dual_surface_put(vxm_dual_surface *s, const uint64_t *bits, const float (*shares)[3],
                                 vxm_error *error) {
   exchange(s);
   memcpy(s->bits[1], bits, s->row_words * s->ny * sizeof *bits);
   clear_border(s);
-  memcpy(s->values[1], values, s->nx * s->ny * sizeof *values);
+  memcpy(s->shares[1], shares, s->nx * s->ny * sizeof *shares);
   if (s->slices++ == 0)
     return VXM_OK;
   vxm_status status = add_layer(s, error);

@@ -7,13 +7,11 @@
 #include "mesh/soup.h"
 
 /**
- * A surface in the making. Slice after slice is put in: bits, and for each centre a
- * signed distance, which tells where between two centres the surface is: on a link from v < 0 to w > 0 it is
- * at the share v / (v - w). Where the sign is not what the bit tells, half a voxel is taken. Cells of eight
- * centres have a vertex for each sheet that passes through them, in the middle of the links it crosses; each
- * crossed link has two triangles between the vertices of the four cells around it ("surface nets", Gibson
- * 1998, with the sheets of Nielson 2004). The outermost voxels count as empty. So the surface is closed and
- * turned outward.
+ * A surface in the making. Slice after slice is put in: bits, and for each link between a set centre and one
+ * that is not the share of it at which the surface crosses it. Cells of eight centres have a vertex for each
+ * sheet that passes through them, in the middle of the links it crosses; each crossed link has two triangles
+ * between the vertices of the four cells around it ("surface nets", Gibson 1998, with the sheets of Nielson
+ * 2004). The outermost voxels count as empty. So the surface is closed and turned outward.
  */
 typedef struct vxm_dual_surface vxm_dual_surface;
 
@@ -27,10 +25,11 @@ void vxm_dual_surface_destroy(vxm_dual_surface *surface);
  * Puts in the next slice along z.
  *
  * @param bits   rows as of a vxm_grid
- * @param values x fastest, model units, negative inside
+ * @param shares of the links that begin at each centre, along x, y and z; those that are not crossed are not
+ *               read
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_dual_surface_put(vxm_dual_surface *surface, const uint64_t *bits, const float *values,
+vxm_status vxm_dual_surface_put(vxm_dual_surface *surface, const uint64_t *bits, const float (*shares)[3],
                                 vxm_error *error);
 
 /**

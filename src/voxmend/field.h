@@ -154,7 +154,9 @@ VXM_API vxm_status vxm_field_threshold(vxm_grid **out, const vxm_field *field,
  *
  * .npy (with its .json beside it) and .nrrd hold every type (VXM_FLOAT16 becomes VXM_FLOAT32 in .nrrd), .vdb
  * 32-bit floats, if each value is one exactly; it remembers the type. .binvox (version 2) holds whole numbers
- * from 0 to 255. Colours go into .npy, .nrrd, .ply, .vox and formats of images. Labels have their table in a
+ * from 0 to 255. .octree, .h5, .zarr, .nii, .vti, .vtk and .tif hold what .nrrd does, slices as .png whole
+ * numbers of 8 and 16 bits. Colours go into all of these but .vdb and .binvox, and into .ply, .glb, .vox,
+ * .schem and .litematic; labels, as whole numbers, into the last four, too. Labels have their table in a
  * .json beside the file.
  *
  * @param options NULL = defaults
@@ -282,8 +284,8 @@ typedef struct vxm_distance_report {
  * Computes the distance from the centre of each voxel to the faces of the mesh, in model units. Within the
  * band it is exact: off by some 1e-14 of the distance and the longest edges, and then rounded to the nearest
  * 32-bit float (which holds 1e-5 voxel up to 168 voxels). Beyond, it is plus or minus the width of the band,
- * which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With a
- * band, time follows surface times band, beside that of the solid.
+ * which is `band` times the longest side of a voxel. The sign is that of the solid of centres
+ * (vxm_voxelize with VXM_THIN_DROP). With a band, time follows surface times band, beside that of the solid.
  *
  * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
  * @param report  may be NULL

@@ -99,7 +99,8 @@ VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
 
 /**
  * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif,
- * .zarr (a folder) or .vdb, told by content first and by name second. Of .vdb, the first grid of bool, mask
+ * slices as .png or .tif (slice_%04d.png), .octree, .bt, .h5, .zarr (a folder), .vox, .schem, .litematic or
+ * .vdb, told by content first and by name second. Of .vdb, the first grid of bool, mask
  * or float: of bool and mask, what is active (and true) is set. "-" reads standard input (not .raw).
  *
  * Numbers are taken as voxels only if nothing is lost: where all of them are 0 or 1, whatever their type, or

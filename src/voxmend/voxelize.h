@@ -199,9 +199,10 @@ VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, con
 
 /**
  * Makes a closed surface of the solid of a mesh, at the resolution of a grid: between voxel centres that are
- * inside and those that are not, where the distances from the surface say that it lies. Smooth surfaces come
- * out smooth, edges and corners cut by half a voxel at most, and thin parts at least as thick as two thirds
- * of a voxel. All edges have two faces, and faces look outward.
+ * inside and those that are not, where the line between them meets the faces. Smooth surfaces come out
+ * smooth, edges and corners cut by half a voxel at most. Thin parts are kept unless they are to be dropped,
+ * as with VXM_THIN_KEEP26: plates and walls come out whole, at least as thick as two thirds of a voxel, with
+ * their middle within half a voxel. All edges have two faces, and faces look outward.
  *
  * @param[out] report of the solid; may be NULL
  * @param mesh        repaired by vxm_mesh_prepare, as for vxm_voxelize

@@ -37,24 +37,24 @@ static void test_cycles(void **state) {
 typedef struct sample {
   vxm_space space;
   uint64_t *bits;
-  float *values;
+  float (*shares)[3]; /**< of the links that begin at each centre */
 } sample;
 
-/** Random bits, and distances that agree with them, or not. */
-static sample random_sample(vxm_rng *rng, unsigned filled, bool agree) {
+/** Random bits, and crossings anywhere on the links. */
+static sample random_sample(vxm_rng *rng, unsigned filled) {
   sample s = {.space = {.origin = {-1, 2, 3}, .voxel_size = {0.5, 0.5, 0.5}}};
   for (int a = 0; a < 3; a++)
     s.space.dims[a] = 3 + (int64_t)vxm_rng_below(rng, a == 0 ? 70 : 5);
   size_t words = (size_t)(s.space.dims[0] + 63) / 64, rows = (size_t)(s.space.dims[1] * s.space.dims[2]);
   s.bits = calloc(words * rows, sizeof *s.bits);
-  s.values = calloc(rows * (size_t)s.space.dims[0], sizeof *s.values);
-  assert_true(s.bits && s.values);
+  s.shares = calloc(rows * (size_t)s.space.dims[0], sizeof *s.shares);
+  assert_true(s.bits && s.shares);
   for (size_t r = 0; r < rows; r++)
     for (size_t i = 0; i < (size_t)s.space.dims[0]; i++) {
       bool set = vxm_rng_below(rng, 8) < filled;
       s.bits[r * words + i / 64] |= (uint64_t)set << (i % 64);
-      bool negative = agree ? set : vxm_rng_below(rng, 2);
-      s.values[r * (size_t)s.space.dims[0] + i] = (float)((negative ? -1 : 1) * vxm_rng_unit(rng));
+      for (int a = 0; a < 3; a++)
+        s.shares[r * (size_t)s.space.dims[0] + i][a] = (float)(3 * vxm_rng_unit(rng) - 1);
     }
   return s;
 }
@@ -73,7 +73,7 @@ static vxm_soup *surface_of(const sample *s, bool *meets_itself) {
   assert_int_equal(vxm_dual_surface_create(&surface, context, &s->space, NULL), VXM_OK);
   for (int64_t k = 0; k < dims[2]; k++)
     assert_int_equal(vxm_dual_surface_put(surface, s->bits + k * dims[1] * ((dims[0] + 63) / 64),
-                                          s->values + k * dims[1] * dims[0], NULL),
+                                          (const float(*)[3])s->shares + k * dims[1] * dims[0], NULL),
                      VXM_OK);
   vxm_soup *soup = vxm_dual_surface_take(surface, meets_itself);
   vxm_dual_surface_destroy(surface);
@@ -97,7 +97,7 @@ static void test_random(void **state) {
   vxm_rng rng = {20};
   int plain = 0;
   for (int trial = 0; trial < 300; trial++) {
-    sample s = random_sample(&rng, 1 + (unsigned)(trial % 7), trial % 3 > 0);
+    sample s = random_sample(&rng, 1 + (unsigned)(trial % 7));
     bool meets_itself;
     vxm_soup *soup = surface_of(&s, &meets_itself);
     brute_report report = look_brute(soup);
@@ -110,25 +110,29 @@ static void test_random(void **state) {
       check_centres(&s, soup, &rng);
     vxm_soup_destroy(soup);
     free(s.bits);
-    free(s.values);
+    free(s.shares);
   }
   assert_true(plain > 20);
 }
 
-/** Of a ball's distances: its volume and its radius, to the second order. */
+/** Of a ball's crossings: its volume and its radius, to the second order. */
 static void test_ball(void **state) {
   (void)state;
   enum { N = 40 };
   const double radius = 15.3;
   sample s = {.space = {.dims = {N, N, N}, .origin = {0, 0, 0}, .voxel_size = {1, 1, 1}}};
   s.bits = calloc(N * N, sizeof *s.bits);
-  s.values = calloc((size_t)N * N * N, sizeof *s.values);
-  assert_true(s.bits && s.values);
+  s.shares = calloc((size_t)N * N * N, sizeof *s.shares);
+  assert_true(s.bits && s.shares);
   for (size_t v = 0; v < (size_t)N * N * N; v++) {
-    double x = (double)(v % N) + 0.5 - 20.1, y = (double)(v / N % N) + 0.5 - 19.8,
-           z = (double)(v / N / N) + 0.5 - 20.3;
-    s.values[v] = (float)(sqrt(x * x + y * y + z * z) - radius);
-    s.bits[v / N] |= (uint64_t)(s.values[v] < 0) << (v % N);
+    const double x[3] = {(double)(v % N) + 0.5 - 20.1, (double)(v / N % N) + 0.5 - 19.8,
+                         (double)(v / N / N) + 0.5 - 20.3};
+    double square = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - radius * radius;
+    s.bits[v / N] |= (uint64_t)(square < 0) << (v % N);
+    for (int a = 0; a < 3; a++) { /* the nearer of both places on the line through the link */
+      double half = sqrt(fmax(x[a] * x[a] - square, 0));
+      s.shares[v][a] = (float)((x[a] + 0.5 < 0 ? -half : half) - x[a]);
+    }
   }
   bool meets_itself;
   vxm_soup *soup = surface_of(&s, &meets_itself);
@@ -143,7 +147,7 @@ static void test_ball(void **state) {
   }
   vxm_soup_destroy(soup);
   free(s.bits);
-  free(s.values);
+  free(s.shares);
 }
 
 int main(void) {
