@@ -105,12 +105,14 @@ int augment_check_former(cli_run *cli, const augment_request *given) {
                   : CLI_END;
 }
 
-/** What a longer run, or one in another format, has left would pass for variants of this one. */
+/** What a longer run, or one in another format, has left would pass for variants of this one. Only once all
+ * of these are there, so that nothing is lost if they are not. */
 static void remove_former(const augment_request *given) {
   char path[PATH_SIZE + NAME_MAX];
   DIR *list = opendir(given->output);
   for (struct dirent *entry; list && (entry = readdir(list));)
-    if (number_of_any(entry->d_name) >= given->first) {
+    if (number_of_any(entry->d_name) >= given->first &&
+        !is_wanted(given, number_of(entry->d_name, given->format))) {
       snprintf(path, sizeof path, "%s/%s", given->output, entry->d_name);
       unlink(path);
     }
@@ -214,9 +216,9 @@ int augment_write_folder(cli_run *cli, augment_folder *f, const augment_request 
   if (!f->is_new && errno != EEXIST)
     status = cli_fail_text(cli, "%s: cannot make the folder: %s", given->output, strerror(errno));
   else {
-    if (given->force && !f->is_new)
-      remove_former(given);
     status = write_chunks(cli, f, given, sampler, names);
+    if (status == CLI_DONE && given->force && !f->is_new)
+      remove_former(given);
   }
   free(names);
   return status;

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "remesh/line_hits.h"
-
+#include "base/hash.h"
 #include "voxel/surface/surface.h"
 
 #include <math.h>
 
 /** Runs of so many voxels may be all there is of a plate. */
 enum { SHORT_RUN = 3 };
+
+/** Rows of a triangle after which it is asked whether to go on. */
+enum { ASK_ROWS = 256 };
 
 /** The solid is made of vertices on a lattice: faces may be off by that, in voxels, against the bits. */
 static const double NEAR = 1.0 / 64;
@@ -37,7 +40,7 @@ struct vxm_line_hits {
   size_t count, capacity;
 };
 
-/** A line of voxels along an axis: the index of each is that of the first plus a multiple of the step. */
+/** A line of voxels along an axis. */
 typedef struct line {
   int axis;
   int64_t at[3]; /**< of a voxel; at[axis] does not matter */
@@ -81,14 +84,14 @@ static uint64_t key_of(const vxm_grid *solid, const line *l, int64_t voxel, int 
 /* ---- Table ---- */
 
 static extent *slot_of(extent *table, size_t capacity, uint64_t key) {
-  size_t at = (size_t)(key * UINT64_C(0x9e3779b97f4a7c15) >> 20) & (capacity - 1);
+  size_t at = (size_t)vxm_mix(key) & (capacity - 1);
   while (table[at].key && table[at].key != key)
     at = (at + 1) & (capacity - 1);
   return &table[at];
 }
 
 static vxm_status make_room(vxm_line_hits *hits, vxm_error *error) {
-  if (2 * hits->count < hits->capacity)
+  if (hits->count < hits->capacity / 4 * 3)
     return VXM_OK;
   vxm_error local = VXM_ERROR_INIT;
   size_t capacity = hits->capacity ? 2 * hits->capacity : 1024;
@@ -138,6 +141,7 @@ typedef struct search {
    * may be those of a body beyond a gap. So all others are looked at first. */
   bool at_neighbours;
   bool seen_some; /**< of those */
+  size_t rows;    /**< that have been looked at */
 } search;
 
 /** A hit at the centre beside a run. @return whether the run wants it */
@@ -240,6 +244,8 @@ static vxm_status add_triangle(search *s, const double p[3][3], vxm_error *error
       line l = {.axis = a};
       l.at[c] = (int64_t)j;
       status = add_row(s, p, &l, (hit){.sine = (float)(n[a] / length), .main = (uint8_t)main}, error);
+      if (status == VXM_OK && ++s->rows % ASK_ROWS == 0)
+        status = vxm_ask(s->hits->context, error);
     }
   }
   return status;

@@ -57,7 +57,7 @@ def commands():
     yield "compare", "compare in.rle in.rle --report report.json"
     yield "bench", "bench in.off --plot out.svg --report report.json --time 0 -r 8 --phases solid_vote --threads 1"
     for f in ("rle", "raw", "binvox", "npy", "nrrd"):
-        yield "augment " + f, "augment in.off -o many -n 3 -r 16 --format %s --report report.json" % f
+        yield "augment " + f, "augment in.off -o many -n 3 -r 16 --format %s --force --report report.json" % f
     yield "augment stdout", "augment in.off -o - -n 3 -r 16"
 
 

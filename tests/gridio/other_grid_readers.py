@@ -188,7 +188,7 @@ def check(mesh, kind, reader):
         print(f"  without .{reader[0]}: {done.stderr.strip()}")
         return None
     if reader[0].endswith("png") and truth.dtype.kind == "f":
-        assert done.returncode != 0 and "choose .tif" in done.stderr, done.stderr
+        assert done.returncode != 0 and "go into .png" in done.stderr, done.stderr
         return None
     assert done.returncode == 0, done.stderr
     voxels, first, size, labels = reader[2](file)

@@ -283,7 +283,7 @@ vxm_status vxm_label_component_add(vxm_octree_pieces *out, vxm_label_component_s
     status = make_octree(&octree, model, lattice, is_without, error);
   else if (!is_empty)
     status = add_windows(out, model, piece, lattice, is_without, error);
-  if (octree) {
+  if (octree && status == VXM_OK) {
     clip c = {out, piece};
     vxm_octree_walk(octree, piece->begin, piece->end, add_clipped, &c);
     status = out->status;

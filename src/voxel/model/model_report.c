@@ -81,7 +81,7 @@ static void warn_of_empty_parts(vxm_model_pass *pass, const vxm_voxelize_report 
   char names[200];
   if (report->empty_parts > 0 && report->voxels > 0 && !vxm_faces_wanted(&pass->solid.options))
     vxm_warn(pass->warnings,
-             "%" PRId64 " of %" PRId64 " parts, %.2g %% of the surface, hold no voxel centre, being thinner "
+             "%" PRId64 " of %" PRId64 " parts, %.3g %% of the surface, hold no voxel centre, being thinner "
              "than a voxel or open sheets: those at %s; %s",
              report->empty_parts, report->parts,
              100 * surface_area(&pass->solid, true) / surface_area(&pass->solid, false),
@@ -163,7 +163,7 @@ static void warn_of_hollow_overlaps(vxm_model_pass *pass, const vxm_voxelize_rep
   vxm_warn(
       pass->warnings,
       "%" PRId64 " of %" PRId64 " parts seem%s to run through %s, but %s faces are wound against each other, "
-      "so that %s hollow there: %s%.2g %% of what that at (%.4g, %.4g, %.4g) encloses, which may be a room; "
+      "so that %s hollow there: %s%.3g %% of what that at (%.4g, %.4g, %.4g) encloses, which may be a room; "
       "look at it with 'view': --method winding fills it",
       report->hollow_overlaps, report->parts, one ? "s" : "", one ? "itself" : "themselves",
       one ? "its" : "their", one ? "it stays" : "they stay", one ? "" : "up to ", 100 * overlap->hollow_share,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/solid/self_overlap_fill.h"
 #include "base/threads.h"
+#include "voxel/solid/outside_parts.h"
 
 typedef struct union_job {
   const vxm_window *window, *other;
@@ -34,7 +35,8 @@ vxm_status vxm_self_overlap_place(vxm_voxel_pass *pass, int axis, vxm_error *err
 void vxm_self_overlap_note(vxm_voxel_pass *pass) {
   const vxm_self_overlap *overlap = &pass->analysis->self_overlap;
   for (size_t i = 0; i < overlap->part_count && pass->has_voxels; i++)
-    atomic_store_explicit(&pass->has_voxels[overlap->part[i]], 1, memory_order_relaxed);
+    if (!vxm_part_is_outside(pass, overlap->part[i]))
+      atomic_store_explicit(&pass->has_voxels[overlap->part[i]], 1, memory_order_relaxed);
 }
 
 vxm_status vxm_self_overlap_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {

@@ -2,6 +2,7 @@
 #include "voxel/sparse/sparse.h"
 #include "voxel/model/memory_need.h"
 #include "voxel/model/model_report.h"
+#include "voxel/solid/outside_parts.h"
 #include "voxel/solid/self_overlap_fill.h"
 #include "voxel/surface/surface_octree.h"
 #include "voxel/thin/thin_sparse.h"
@@ -76,17 +77,18 @@ static vxm_status unite_parts(vxm_sparse **out, vxm_model_pass *pass, const vxm_
   return status;
 }
 
-/** Whether a part that lies in itself has no voxel by parity. */
+/** Whether a part that lies in itself, and in the grid, has no voxel by parity. */
 static bool lacks_voxels(const vxm_voxel_pass *solid) {
   const vxm_self_overlap *overlap = &solid->analysis->self_overlap;
   bool lacks = false;
-  for (size_t i = 0; i < overlap->part_count && solid->has_voxels; i++)
-    lacks |= !atomic_load_explicit(&solid->has_voxels[overlap->part[i]], memory_order_relaxed);
+  for (size_t i = 0; i < overlap->part_count && solid->has_voxels && !lacks; i++)
+    lacks = !atomic_load_explicit(&solid->has_voxels[overlap->part[i]], memory_order_relaxed) &&
+            !vxm_part_is_outside(solid, overlap->part[i]);
   return lacks;
 }
 
-/** Notes whether the parts that lie in themselves have voxels only in what parity leaves hollow, which is so
- * rare that the octree is made once more without that. */
+/** Notes whether the parts that lie in themselves have voxels only in what parity leaves hollow: the octree
+ * is made once more without that. Few models have a part for which this is asked. */
 static vxm_status note_filled(const vxm_sparse *filled, vxm_model_pass *pass, const vxm_sparse_job *job,
                               vxm_error *error) {
   vxm_sparse *hollow;
@@ -103,22 +105,29 @@ static vxm_status note_filled(const vxm_sparse *filled, vxm_model_pass *pass, co
   return VXM_OK;
 }
 
+/** @param noted whether the report is to know which parts have voxels */
 static vxm_status unite_directly(vxm_sparse **out, vxm_model_pass *pass, const vxm_sparse_job *job,
-                                 vxm_error *error) {
+                                 bool noted, vxm_error *error) {
   vxm_voxel_pass *solid = &pass->solid;
   if (!vxm_overlaps_wanted(solid->analysis, &solid->options))
     return unite_parts(out, pass, job, NULL, error);
   vxm_status status = vxm_self_overlap_place(solid, along_x, error);
   if (status == VXM_OK)
     status = unite_parts(out, pass, job, &solid->overlap_winding, error);
-  return status == VXM_OK && lacks_voxels(solid) ? note_filled(*out, pass, job, error) : status;
+  if (status == VXM_OK && noted && lacks_voxels(solid))
+    status = note_filled(*out, pass, job, error);
+  if (status != VXM_OK) {
+    vxm_sparse_destroy(*out);
+    *out = NULL;
+  }
+  return status;
 }
 
 vxm_status vxm_sparse_closed(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
   vxm_sparse_job job = job_of(pass);
   job.part_end = pass->solid.analysis->triangles.split.kind_end[VXM_PART_CAPPED];
   job.roles = VXM_ROLE_FACE | VXM_ROLE_CAP;
-  return unite_directly(out, pass, &job, error);
+  return unite_directly(out, pass, &job, false, error);
 }
 
 /** By the pass's engine; `*out` stays NULL where that is for the CPU. */
@@ -143,7 +152,7 @@ static vxm_status make_solid(vxm_sparse **out, vxm_model_pass *pass, vxm_error *
   vxm_status status = unite_elsewhere(out, pass, error);
   vxm_sparse_job job = job_of(pass);
   if (status == VXM_OK && !*out)
-    status = unite_directly(out, pass, &job, error);
+    status = unite_directly(out, pass, &job, true, error);
   if (status == VXM_OK && vxm_octree_bytes(*out) >= large_octree) {
     vxm_workspace_destroy(&pass->workspace);
     pass->workspace = vxm_workspace_of(pass->solid.context);
