@@ -29,14 +29,10 @@ static bool is_glb(const vxm_reader_request *request) {
   return request->size >= 4 && memcmp(request->data, "glTF", 4) == 0;
 }
 
-static uint32_t word(const unsigned char *at) {
-  return vxm_load_u32(at, vxm_must_swap(false));
-}
-
 /** The size is what the parts take that are told of, or what the header says. */
 static vxm_status fail_cut(const vxm_reader_request *request, uint64_t size, vxm_error *error) {
-  if (request->size >= HEADER && word(request->data + 8) > size)
-    size = word(request->data + 8);
+  if (request->size >= HEADER && vxm_load_le32(request->data + 8) > size)
+    size = vxm_load_le32(request->data + 8);
   return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){request->name, 0, -1, -1},
                      "the file is cut off: %zu of %" PRIu64 " bytes are there", request->size, size);
 }
@@ -50,9 +46,9 @@ static vxm_status find_parts(layout *out, const vxm_reader_request *request, vxm
   *out = (layout){.is_glb = true};
   if (request->size < HEADER + CHUNK)
     return fail_cut(request, HEADER + CHUNK, error);
-  if (word(data + 4) != VERSION)
+  if (vxm_load_le32(data + 4) != VERSION)
     return VXM_OK;
-  size_t left = request->size - HEADER - CHUNK, size = word(data + HEADER);
+  size_t left = request->size - HEADER - CHUNK, size = vxm_load_le32(data + HEADER);
   if (size > left)
     return fail_cut(request, HEADER + CHUNK + (uint64_t)size, error);
   out->json = data + HEADER + CHUNK;
@@ -61,10 +57,10 @@ static vxm_status find_parts(layout *out, const vxm_reader_request *request, vxm
   if (left < CHUNK)
     return VXM_OK;
   const unsigned char *chunk = out->json + size;
-  if (word(chunk) > left - CHUNK)
-    return fail_cut(request, request->size - left + CHUNK + word(chunk), error);
+  if (vxm_load_le32(chunk) > left - CHUNK)
+    return fail_cut(request, request->size - left + CHUNK + vxm_load_le32(chunk), error);
   out->binary = chunk + CHUNK;
-  out->binary_size = word(chunk);
+  out->binary_size = vxm_load_le32(chunk);
   return VXM_OK;
 }
 

@@ -13,14 +13,6 @@
 enum { END_SIZE = 22, ENTRY_SIZE = 46, LOCAL_SIZE = 30, COMMENT_MAX = 65535, PIECE = 1 << 16 };
 enum { STORED = 0, DEFLATED = 8 };
 
-static uint32_t half(const unsigned char *at) {
-  return vxm_load_u16(at, vxm_must_swap(false));
-}
-
-static uint32_t word(const unsigned char *at) {
-  return vxm_load_u32(at, vxm_must_swap(false));
-}
-
 /* ---- The directory ---- */
 
 bool vxm_zip_open(vxm_zip *zip, const unsigned char *data, size_t size) {
@@ -29,7 +21,7 @@ bool vxm_zip_open(vxm_zip *zip, const unsigned char *data, size_t size) {
     const unsigned char *at = data + size - back;
     if (memcmp(at, "PK\5\6", 4) != 0)
       continue;
-    size_t length = word(at + 12), offset = word(at + 16);
+    size_t length = vxm_load_le32(at + 12), offset = vxm_load_le32(at + 16);
     if (offset > size - back || length > size - back - offset)
       continue;
     *zip = (vxm_zip){.data = data, .at = data + offset, .end = data + offset + length};
@@ -44,7 +36,7 @@ static bool find_data(vxm_zip_member *out, const vxm_zip *zip, size_t offset) {
   const unsigned char *local = zip->data + offset;
   if (size < LOCAL_SIZE || offset > size - LOCAL_SIZE || memcmp(local, "PK\3\4", 4) != 0)
     return false;
-  size_t head = LOCAL_SIZE + half(local + 26) + half(local + 28);
+  size_t head = LOCAL_SIZE + vxm_load_le16(local + 26) + vxm_load_le16(local + 28);
   out->data = local + head;
   return head <= size - offset && out->size <= size - offset - head;
 }
@@ -54,15 +46,16 @@ bool vxm_zip_next(vxm_zip *zip, vxm_zip_member *out) {
   size_t left = (size_t)(zip->end - at);
   if (left < ENTRY_SIZE || memcmp(at, "PK\1\2", 4) != 0)
     return false;
-  size_t name = half(at + 28), length = ENTRY_SIZE + name + half(at + 30) + half(at + 32);
+  size_t name = vxm_load_le16(at + 28),
+         length = ENTRY_SIZE + name + vxm_load_le16(at + 30) + vxm_load_le16(at + 32);
   if (length > left)
     return false;
   *out = (vxm_zip_member){.name = (const char *)at + ENTRY_SIZE,
                           .name_size = name,
-                          .size = word(at + 20),
-                          .method = half(at + 10)};
+                          .size = vxm_load_le32(at + 20),
+                          .method = vxm_load_le16(at + 10)};
   zip->at += length;
-  return find_data(out, zip, word(at + 42));
+  return find_data(out, zip, vxm_load_le32(at + 42));
 }
 
 /* ---- Unpacking ---- */
