@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What lies in a zip archive in memory, to look at (PKWARE's application note, 4.3). Archives beyond 4 GiB
- * are passed over. */
+/** What lies in a zip archive in memory, to look at (PKWARE's application note, 4.3), also with the
+ * numbers of 64 bits (zip64) that some programs write for small files, too. */
 #ifndef VXM_MODULES_ASSIMP_ZIP_H
 #define VXM_MODULES_ASSIMP_ZIP_H
 
@@ -22,7 +22,8 @@ typedef struct vxm_zip {
 
 /** False if there is no directory at the end. */
 bool vxm_zip_open(vxm_zip *zip, const unsigned char *data, size_t size);
-/** False behind the last one, or where the directory is damaged. */
+/** False behind the last one, or where the directory is damaged. What is not where an entry says is passed
+ * over. */
 bool vxm_zip_next(vxm_zip *zip, vxm_zip_member *out);
 
 /** Looks at some bytes of a file, which come in their order; false ends it. */
