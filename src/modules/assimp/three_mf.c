@@ -11,11 +11,11 @@ typedef struct slice {
   size_t size;
 } slice;
 
-enum { PIECE = 1 << 16, CARRIED = 256, NAMES = 24, PREFIX = 32, URI = 120 };
+enum { CARRIED = 256, NAMES = 24, PREFIX = 32, URI = 120 };
 
 /** What is known of a model while it goes by. */
 typedef struct look {
-  char text[CARRIED + PIECE]; /**< the last piece, and the end of the one before it */
+  char text[CARRIED + VXM_ZIP_PIECE]; /**< the last piece, and the end of the one before it */
   size_t carried;
   bool knows_head;
   char path[PREFIX +

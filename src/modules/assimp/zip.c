@@ -130,7 +130,7 @@ static void give(void *payload, void *block) {
 }
 
 static bool unpack(const vxm_zip_member *member, vxm_context *context, vxm_zip_look look, void *payload) {
-  char *piece = vxm_alloc(context, PIECE, 1, NULL);
+  char *piece = vxm_alloc(context, VXM_ZIP_PIECE, 1, NULL);
   z_stream z = {.zalloc = take, .zfree = give, .opaque = context, .next_in = member->data};
   int state = piece && inflateInit2(&z, -MAX_WBITS) == Z_OK ? Z_OK : Z_MEM_ERROR;
   bool is_open = state == Z_OK;
@@ -140,9 +140,9 @@ static bool unpack(const vxm_zip_member *member, vxm_context *context, vxm_zip_l
       left -= z.avail_in;
     }
     z.next_out = (unsigned char *)piece;
-    z.avail_out = PIECE;
+    z.avail_out = VXM_ZIP_PIECE;
     state = inflate(&z, Z_NO_FLUSH);
-    if ((state == Z_OK || state == Z_STREAM_END) && !look(payload, piece, PIECE - z.avail_out))
+    if ((state == Z_OK || state == Z_STREAM_END) && !look(payload, piece, VXM_ZIP_PIECE - z.avail_out))
       break;
   }
   if (is_open)
@@ -163,7 +163,7 @@ bool vxm_zip_unpack(const vxm_zip_member *member, vxm_context *context, vxm_zip_
   const char *at = (const char *)member->data;
   size_t left = member->method == STORED ? member->size : 0;
   while (left > 0) {
-    size_t some = left < PIECE ? left : PIECE;
+    size_t some = left < VXM_ZIP_PIECE ? left : VXM_ZIP_PIECE;
     if (!look(payload, at, some))
       break;
     at += some;

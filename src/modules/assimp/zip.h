@@ -26,7 +26,10 @@ bool vxm_zip_open(vxm_zip *zip, const unsigned char *data, size_t size);
  * over. */
 bool vxm_zip_next(vxm_zip *zip, vxm_zip_member *out);
 
-/** Looks at some bytes of a file, which come in their order; false ends it. */
+/** The most bytes that are looked at in one go. */
+enum { VXM_ZIP_PIECE = 1 << 16 };
+
+/** Looks at some bytes of a file, at most VXM_ZIP_PIECE, which come in their order; false ends it. */
 typedef bool (*vxm_zip_look)(void *payload, const char *bytes, size_t size);
 
 /** Unpacks a file piece by piece. False if it cannot be unpacked, as this build has no zlib. */
