@@ -42,6 +42,7 @@ static bool open_at(vxm_zip *zip, const unsigned char *data, size_t place) {
   zip->data = data;
   zip->at = data + offset;
   zip->end = zip->at + length;
+  zip->left = (size_t)offset;
   return true;
 }
 
@@ -157,7 +158,11 @@ static bool unpack(const vxm_zip_member *member, vxm_context *context, vxm_zip_l
 }
 #endif
 
-bool vxm_zip_unpack(const vxm_zip_member *member, vxm_context *context, vxm_zip_look look, void *payload) {
+bool vxm_zip_unpack(vxm_zip *zip, const vxm_zip_member *member, vxm_context *context, vxm_zip_look look,
+                    void *payload) {
+  if (member->size > zip->left)
+    return false;
+  zip->left -= member->size;
   if (member->method == DEFLATED)
     return unpack(member, context, look, payload);
   const char *at = (const char *)member->data;

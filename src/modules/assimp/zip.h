@@ -18,6 +18,7 @@ typedef struct vxm_zip_member {
 /** Where the directory is read next. Start from vxm_zip_open. */
 typedef struct vxm_zip {
   const unsigned char *data, *at, *end;
+  size_t left; /**< the bytes that may still be unpacked: no more than there are, unless files overlap */
 } vxm_zip;
 
 /** False if there is no directory at the end. */
@@ -32,7 +33,9 @@ enum { VXM_ZIP_PIECE = 1 << 16 };
 /** Looks at some bytes of a file, at most VXM_ZIP_PIECE, which come in their order; false ends it. */
 typedef bool (*vxm_zip_look)(void *payload, const char *bytes, size_t size);
 
-/** Unpacks a file piece by piece. False if it cannot be unpacked, as this build has no zlib. */
-bool vxm_zip_unpack(const vxm_zip_member *member, vxm_context *context, vxm_zip_look look, void *payload);
+/** Unpacks a file piece by piece. False if it is not unpacked: this build has no zlib, the packing is
+ * another, or the files are more than the archive can hold, as where many entries are of the same bytes. */
+bool vxm_zip_unpack(vxm_zip *zip, const vxm_zip_member *member, vxm_context *context, vxm_zip_look look,
+                    void *payload);
 
 #endif
