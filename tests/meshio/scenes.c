@@ -312,6 +312,9 @@ static void test_required(void **state) {
   read_fails(b.data, b.size, "a.gltf", VXM_ERROR_FORMAT,
              "it needs the glTF extension EXT_mesh_gpu_instancing");
   bytes_free(&b);
+  b = gltf("{\"name\":\"\xe9\",\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{}}}", TRIANGLES);
+  read_fails(b.data, b.size, "a.gltf", VXM_ERROR_FORMAT, "its JSON is damaged: line 1");
+  bytes_free(&b);
 }
 
 /* ---- Other formats ---- */

@@ -66,8 +66,17 @@ static vxm_status find_parts(layout *out, const vxm_reader_request *request, vxm
 
 /* ---- JSON in and out ---- */
 
-static bool contains(const layout *parts, const char *text) {
-  return memmem(parts->json, parts->json_size, text, strlen(text)) != NULL;
+static vxm_status out_of_memory(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_MEMORY, "not enough memory to read the file");
+}
+
+/** Whether the text has a word of what is looked at here and not by Assimp. */
+static bool needs_look(const layout *parts) {
+  static const char *const words[] = {"extensionsRequired", "KHR_mesh_quant", "EXT_mesh_gpu_instancing"};
+  for (size_t w = 0; w < sizeof words / sizeof *words; w++)
+    if (memmem(parts->json, parts->json_size, words[w], strlen(words[w])))
+      return true;
+  return false;
 }
 
 /** Takes the JSON; NULL where there is none of glTF 2. What is not JSON to the letter is Assimp's matter,
@@ -79,8 +88,9 @@ static vxm_status load(json_t **out, const layout *parts, const char *name, vxm_
   if (*out && (!version || strncmp(version, "2.", 2) != 0)) {
     json_decref(*out);
     *out = NULL;
-  } else if (parts->json && !*out &&
-             (contains(parts, "extensionsRequired") || contains(parts, "KHR_mesh_quant")))
+  } else if (parts->json && !*out && what.line < 0) /* nothing is wrong with the text */
+    return out_of_memory(error);
+  else if (parts->json && !*out && needs_look(parts))
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1},
                        "its JSON is damaged: line %d: %.150s", what.line, what.text);
   return VXM_OK;
@@ -97,7 +107,7 @@ static vxm_status rebuild(vxm_gltf *out, const json_t *root, const layout *parts
   size_t rest = request->size - (size_t)(behind - request->data);
   size_t before = parts->is_glb ? HEADER + CHUNK : 0;
   if (!json)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "not enough memory to read the file");
+    return out_of_memory(error);
   out->size = before + padded + rest;
   out->data = vxm_alloc(context, out->size, 1, error);
   if (!out->data) {
