@@ -48,20 +48,32 @@ static bool is_quantized(const json_t *root, const json_t *mesh) {
   return false;
 }
 
+/** The mesh of a node that has bones, -1 if there is none. */
+static json_int_t mesh_with_bones(const json_t *node) {
+  const json_t *index = json_object_get(node, "mesh");
+  return json_object_get(node, "skin") && json_is_integer(index) ? json_integer_value(index) : -1;
+}
+
 /** The true size of such a mesh may stand in its bones, which are not applied. */
-static void warn_bones(const json_t *root, vxm_warnings *warnings) {
-  const json_t *node;
-  size_t n;
-  json_array_foreach(json_object_get(root, "nodes"), n, node) {
-    const json_t *index = json_object_get(node, "mesh");
-    if (json_object_get(node, "skin") && json_is_integer(index) && json_integer_value(index) >= 0 &&
-        is_quantized(root,
-                     json_array_get(json_object_get(root, "meshes"), (size_t)json_integer_value(index)))) {
-      vxm_warn(warnings, "meshes with bones have positions in whole numbers: their size and place are those "
-                         "without the bones, which are not applied");
-      return;
-    }
+static vxm_status warn_bones(const converter *c, vxm_warnings *warnings, vxm_error *error) {
+  const json_t *node, *mesh, *meshes = json_object_get(c->root, "meshes");
+  size_t n, m, count = json_array_size(meshes);
+  bool *has_bones = vxm_calloc(c->buffers->context, count, sizeof *has_bones, error), found = false;
+  if (!has_bones)
+    return VXM_ERROR_MEMORY;
+  json_array_foreach(json_object_get(c->root, "nodes"), n, node) {
+    json_int_t index = mesh_with_bones(node);
+    if (index >= 0 && (size_t)index < count)
+      has_bones[index] = true;
   }
+  json_array_foreach(meshes, m, mesh) {
+    found = found || (has_bones[m] && is_quantized(c->root, mesh));
+  }
+  vxm_free(c->buffers->context, has_bones);
+  if (found)
+    vxm_warn(warnings, "meshes with bones have positions in whole numbers: their size and place are those "
+                       "without the bones, which are not applied");
+  return VXM_OK;
 }
 
 /* ---- Conversion ---- */
@@ -135,9 +147,8 @@ vxm_status vxm_gltf_make_floats(unsigned char **floats, size_t *size, json_t *ro
   converter c = {.root = root, .buffers = buffers};
   const json_t *mesh, *primitive;
   size_t m, p;
-  vxm_status status = VXM_OK;
   *floats = NULL;
-  warn_bones(root, warnings);
+  vxm_status status = warn_bones(&c, warnings, error);
   json_array_foreach(json_object_get(root, "meshes"), m, mesh) {
     json_array_foreach(json_object_get(mesh, "primitives"), p, primitive) {
       if (status == VXM_OK)
