@@ -277,6 +277,35 @@ static void test_quantized_damage(void **state) {
   bytes_free(&whole);
 }
 
+/** Some accessors may lie over the same bytes, but not any number of them. */
+static void test_quantized_sharing(void **state) {
+  (void)state;
+  static const int counts[] = {20, 200}; /* of 24 bytes each, over a buffer of 72 */
+  if (!has_module("assimp"))
+    skip();
+  for (int k = 0; k < 2; k++) {
+    bytes b = {0};
+    bytes_text(&b, "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
+                   "\"mesh\":0}],\"meshes\":[{\"primitives\":[");
+    for (int n = 0; n < counts[k]; n++)
+      bytes_text(&b, "%s{\"attributes\":{\"POSITION\":%d},\"indices\":%d}", n > 0 ? "," : "", n, counts[k]);
+    bytes_text(&b, "]}],\"accessors\":[");
+    for (int n = 0; n < counts[k]; n++)
+      bytes_text(&b, "{\"bufferView\":0,\"componentType\":5123,\"count\":4,\"type\":\"VEC3\"},");
+    bytes_text(&b, "{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}],"
+                   "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,"
+                   "\"byteLength\":24}],\"buffers\":[{\"byteLength\":72,"
+                   "\"uri\":\"data:application/octet-stream;base64," WEDGE "\"}]}");
+    if (k == 0) {
+      vxm_soup *soup = read_data(b.data, b.size, "a.gltf");
+      expect_counts(soup, 4 * 20, 4 * 20);
+      vxm_soup_destroy(soup);
+    } else
+      read_fails(b.data, b.size, "a.gltf", VXM_ERROR_FORMAT, "too many others lie over the same bytes");
+    bytes_free(&b);
+  }
+}
+
 /** What a file says that it cannot be read right without. */
 static void test_required(void **state) {
   (void)state;
@@ -663,22 +692,16 @@ static void test_in_process(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_transforms),
-                                     cmocka_unit_test(test_names),
-                                     cmocka_unit_test(test_lines_and_points),
-                                     cmocka_unit_test(test_stool),
-                                     cmocka_unit_test(test_quantized),
-                                     cmocka_unit_test(test_quantized_scale),
-                                     cmocka_unit_test(test_quantized_damage),
-                                     cmocka_unit_test(test_required),
-                                     cmocka_unit_test(test_3mf),
-                                     cmocka_unit_test(test_3mf_extensions),
-                                     cmocka_unit_test(test_3mf_overlap),
-                                     cmocka_unit_test(test_collada),
-                                     cmocka_unit_test(test_options),
-                                     cmocka_unit_test(test_small_formats),
-                                     cmocka_unit_test(test_damage),
-                                     cmocka_unit_test(test_in_process)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_transforms),       cmocka_unit_test(test_names),
+      cmocka_unit_test(test_lines_and_points), cmocka_unit_test(test_stool),
+      cmocka_unit_test(test_quantized),        cmocka_unit_test(test_quantized_scale),
+      cmocka_unit_test(test_quantized_damage), cmocka_unit_test(test_quantized_sharing),
+      cmocka_unit_test(test_required),         cmocka_unit_test(test_3mf),
+      cmocka_unit_test(test_3mf_extensions),   cmocka_unit_test(test_3mf_overlap),
+      cmocka_unit_test(test_collada),          cmocka_unit_test(test_options),
+      cmocka_unit_test(test_small_formats),    cmocka_unit_test(test_damage),
+      cmocka_unit_test(test_in_process)};
   leave_signals_alone();
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,6 +46,7 @@ static const vxm_gltf_buffer *take_buffer(vxm_gltf_buffers *buffers, size_t inde
     buffer->data = buffers->binary;
     buffer->size = buffers->binary_size;
   }
+  buffers->size += buffer->asked ? 0 : buffer->size;
   buffer->asked = true;
   return buffer->data ? buffer : NULL;
 }

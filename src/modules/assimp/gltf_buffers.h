@@ -25,6 +25,7 @@ typedef struct vxm_gltf_buffers {
   size_t binary_size;
   vxm_gltf_buffer *list;
   size_t count;
+  size_t size; /**< the bytes of all that were asked for */
 } vxm_gltf_buffers;
 
 enum { VXM_GLTF_BYTE = 5120, VXM_GLTF_FLOAT = 5126 };

@@ -13,6 +13,7 @@ typedef struct converter {
   vxm_gltf_buffers *buffers;
   unsigned char *floats;
   size_t size, capacity;
+  size_t taken; /**< the bytes of all elements so far */
 } converter;
 
 /* ---- What is to be converted ---- */
@@ -112,11 +113,22 @@ static bool point_to_floats(converter *c, json_t *accessor, size_t offset) {
          json_object_set_new(accessor, "componentType", json_integer(VXM_GLTF_FLOAT)) == 0;
 }
 
+/** Finds the elements of an accessor, as vxm_gltf_find_elements. Accessors may share bytes, but not so often
+ * that a small file takes all memory there is. */
+static const char *find_elements(converter *c, vxm_gltf_elements *out, const json_t *accessor) {
+  enum { SHARED_MAX = 8 };
+  const char *failure = vxm_gltf_find_elements(out, c->buffers, accessor);
+  if (failure)
+    return failure;
+  c->taken += out->count * out->components * out->bytes;
+  return c->taken / SHARED_MAX > c->buffers->size ? "too many others lie over the same bytes" : NULL;
+}
+
 /** Converts one accessor of an attribute; what is no position may stay as it is where it cannot be. */
 static vxm_status convert(converter *c, json_t *accessor, const char *attribute, vxm_error *error) {
   vxm_gltf_elements elements;
   const char *name = c->buffers->request->name;
-  const char *failure = vxm_gltf_find_elements(&elements, c->buffers, accessor);
+  const char *failure = find_elements(c, &elements, accessor);
   if (failure && is_position(attribute))
     return vxm_fail_at(
         error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1},
