@@ -87,7 +87,7 @@ static const unsigned char *find_view(vxm_gltf_buffers *buffers, const json_t *v
 
 const char *vxm_gltf_find_elements(vxm_gltf_elements *out, vxm_gltf_buffers *buffers,
                                    const json_t *accessor) {
-  enum { BYTES_8_UNSIGNED = 5121, BYTES_16 = 5122, BYTES_16_UNSIGNED = 5123 };
+  enum { BYTES_16 = 5122, BYTES_16_UNSIGNED = 5123 };
   json_int_t kind = json_integer_value(json_object_get(accessor, "componentType"));
   size_t view_index, offset, size;
   *out =

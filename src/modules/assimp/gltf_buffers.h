@@ -15,7 +15,7 @@ typedef struct vxm_gltf_buffer {
   bool asked;
 } vxm_gltf_buffer;
 
-/** Buffers are read when they are first needed. Start from the first three members, end with
+/** Buffers are read when they are first needed. Start from the first five members, end with
  * vxm_gltf_buffers_free. */
 typedef struct vxm_gltf_buffers {
   const json_t *root;
