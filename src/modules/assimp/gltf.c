@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "modules/assimp/gltf.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -83,12 +84,13 @@ static bool needs_look(const layout *parts) {
  * unless it may have what Assimp does not look at. */
 static vxm_status load(json_t **out, const layout *parts, const char *name, vxm_error *error) {
   json_error_t what;
+  errno = 0; /* jansson takes a lack of memory for damage in places */
   *out = parts->json ? json_loadb((const char *)parts->json, parts->json_size, JSON_ALLOW_NUL, &what) : NULL;
   const char *version = json_string_value(json_object_get(json_object_get(*out, "asset"), "version"));
   if (*out && (!version || strncmp(version, "2.", 2) != 0)) {
     json_decref(*out);
     *out = NULL;
-  } else if (parts->json && !*out && what.line < 0) /* nothing is wrong with the text */
+  } else if (parts->json && !*out && errno == ENOMEM)
     return out_of_memory(error);
   else if (parts->json && !*out && needs_look(parts))
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1},
