@@ -511,11 +511,12 @@ static void test_3mf_extensions(void **state) {
     bytes b = three_mf_with(n >= count, cases[i].head, cases[i].item, three_mf_model);
     if (cases[i].told)
       read_fails(b.data, b.size, "a.3mf", VXM_ERROR_FORMAT, cases[i].told);
-    else {
+    else if (n < count) {
       vxm_soup *soup = read_data(b.data, b.size, "a.3mf");
       expect_counts(soup, 12, 12);
       vxm_soup_destroy(soup);
-    }
+    } else
+      survives(&b, "a.3mf"); /* minizip 1.1, which Assimp may be built with, finds no file in it */
     damage_many(&b, "a.3mf", 4);
     bytes_free(&b);
   }
