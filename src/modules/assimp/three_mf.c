@@ -236,3 +236,16 @@ vxm_status vxm_three_mf_check(const vxm_reader_request *request, vxm_context *co
   vxm_free(context, seen);
   return status;
 }
+
+vxm_status vxm_three_mf_narrow(unsigned char **out, const vxm_reader_request *request, vxm_context *context,
+                               vxm_error *error) {
+  *out = vxm_alloc(context, request->size, 1, error);
+  if (!*out)
+    return VXM_ERROR_MEMORY;
+  memcpy(*out, request->data, request->size);
+  if (!vxm_zip_narrow(*out, request->size)) {
+    vxm_free(context, *out);
+    *out = NULL;
+  }
+  return VXM_OK;
+}

@@ -27,6 +27,10 @@ bool vxm_zip_open(vxm_zip *zip, const unsigned char *data, size_t size);
  * over. */
 bool vxm_zip_next(vxm_zip *zip, vxm_zip_member *out);
 
+/** Writes the numbers in the directory of an archive with 32 bits wherever they fit. False if there was
+ * nothing to do. */
+bool vxm_zip_narrow(unsigned char *data, size_t size);
+
 /** The most bytes that are looked at in one go. */
 enum { VXM_ZIP_PIECE = 1 << 16 };
 
