@@ -93,6 +93,16 @@ static inline uint32_t vxm_le32(uint32_t word) {
 #endif
 }
 
+static inline unsigned vxm_load_le16(const unsigned char *bytes) {
+  return bytes[0] | (unsigned)bytes[1] << 8;
+}
+
+static inline uint32_t vxm_load_le32(const unsigned char *bytes) {
+  uint32_t word;
+  memcpy(&word, bytes, sizeof word);
+  return vxm_le32(word);
+}
+
 static inline uint64_t vxm_load_le64(const unsigned char *bytes) {
   uint64_t word;
   memcpy(&word, bytes, sizeof word);

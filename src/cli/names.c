@@ -2,6 +2,7 @@
 /** Which files a run reads and writes: none of those written may be one of the others. */
 #include "cli/cli.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -105,18 +106,15 @@ static bool is_description(const char *path) {
   return is_one;
 }
 
-/** A relative name out of a URI, where "%20" stands for a blank. */
+/** A relative name out of a URI, where "%20" stands for a blank; what is no code stays, as does %00. It is
+ * the name that the reader opens (vxm_uri_decode), which is not seen from here. */
 static void decode(char *text) {
   char *to = text;
-  unsigned code;
-  int used;
   for (const char *from = text; *from; from++, to++) {
-    used = 0;
-    *to = *from;
-    if (*from == '%' && sscanf(from, "%%%2x%n", &code, &used) == 1 && used == 3) {
-      *to = (char)code;
-      from += 2;
-    }
+    bool is_code = *from == '%' && isxdigit((unsigned char)from[1]) && isxdigit((unsigned char)from[2]) &&
+                   strncmp(from, "%00", 3) != 0;
+    *to = is_code ? (char)strtoul((const char[]){from[1], from[2], '\0'}, NULL, 16) : *from;
+    from += is_code ? 2 : 0;
   }
   *to = '\0';
 }

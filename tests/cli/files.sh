@@ -41,6 +41,10 @@ run "voxmend convert rocket.binvox -o b.npy --report rocket.binvox.json -q"
 printf '{"asset":{"version":"2.0"},"buffers":[{"uri":"the%%20data.raw","byteLength":4}]}' >scene.gltf
 printf abcd >'the data.raw'
 run "voxmend voxelize scene.gltf -o 'the data.raw'"
+# What is no code is part of the name.
+printf '{"asset":{"version":"2.0"},"buffers":[{"uri":"the%% 5.raw"}]}' >scene.gltf
+printf abcd >'the% 5.raw'
+run "voxmend voxelize scene.gltf -o 'the% 5.raw'"
 touch rocket.mtl coat.mtl
 ln -s rocket.off rocket.obj
 run "voxmend info rocket.obj --report rocket.mtl"

@@ -83,10 +83,18 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
   vxm_status status = VXM_OK;
   if (is_gltf(request))
     status = vxm_gltf_prepare(&gltf, request, soup->context, &soup->warnings, error);
-  if (strcmp(request->hint, "3mf") == 0)
+  vxm_reader_request narrowed = *request;
+  unsigned char *archive = NULL;
+  if (strcmp(request->hint, "3mf") == 0) {
     status = vxm_three_mf_check(request, soup->context, error);
+    if (status == VXM_OK)
+      status = vxm_three_mf_narrow(&archive, request, soup->context, error);
+    if (archive)
+      narrowed.data = archive;
+  }
   if (status == VXM_OK)
-    status = import(soup, request, path, is_gltf(request) ? &gltf : NULL, error);
+    status = import(soup, &narrowed, path, is_gltf(request) ? &gltf : NULL, error);
+  vxm_free(soup->context, archive);
   vxm_gltf_free(&gltf, soup->context);
   return status;
 }

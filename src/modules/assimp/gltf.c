@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "modules/assimp/gltf.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,14 +30,10 @@ static bool is_glb(const vxm_reader_request *request) {
   return request->size >= 4 && memcmp(request->data, "glTF", 4) == 0;
 }
 
-static uint32_t word(const unsigned char *at) {
-  return vxm_load_u32(at, vxm_must_swap(false));
-}
-
 /** The size is what the parts take that are told of, or what the header says. */
 static vxm_status fail_cut(const vxm_reader_request *request, uint64_t size, vxm_error *error) {
-  if (request->size >= HEADER && word(request->data + 8) > size)
-    size = word(request->data + 8);
+  if (request->size >= HEADER && vxm_load_le32(request->data + 8) > size)
+    size = vxm_load_le32(request->data + 8);
   return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){request->name, 0, -1, -1},
                      "the file is cut off: %zu of %" PRIu64 " bytes are there", request->size, size);
 }
@@ -50,9 +47,9 @@ static vxm_status find_parts(layout *out, const vxm_reader_request *request, vxm
   *out = (layout){.is_glb = true};
   if (request->size < HEADER + CHUNK)
     return fail_cut(request, HEADER + CHUNK, error);
-  if (word(data + 4) != VERSION)
+  if (vxm_load_le32(data + 4) != VERSION)
     return VXM_OK;
-  size_t left = request->size - HEADER - CHUNK, size = word(data + HEADER);
+  size_t left = request->size - HEADER - CHUNK, size = vxm_load_le32(data + HEADER);
   if (size > left)
     return fail_cut(request, HEADER + CHUNK + (uint64_t)size, error);
   out->json = data + HEADER + CHUNK;
@@ -61,30 +58,41 @@ static vxm_status find_parts(layout *out, const vxm_reader_request *request, vxm
   if (left < CHUNK)
     return VXM_OK;
   const unsigned char *chunk = out->json + size;
-  if (word(chunk) > left - CHUNK)
-    return fail_cut(request, request->size - left + CHUNK + word(chunk), error);
+  if (vxm_load_le32(chunk) > left - CHUNK)
+    return fail_cut(request, request->size - left + CHUNK + vxm_load_le32(chunk), error);
   out->binary = chunk + CHUNK;
-  out->binary_size = word(chunk);
+  out->binary_size = vxm_load_le32(chunk);
   return VXM_OK;
 }
 
 /* ---- JSON in and out ---- */
 
-static bool contains(const layout *parts, const char *text) {
-  return memmem(parts->json, parts->json_size, text, strlen(text)) != NULL;
+static vxm_status out_of_memory(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_MEMORY, "not enough memory to read the file");
+}
+
+/** Whether the text has a word of what is looked at here and not by Assimp. */
+static bool needs_look(const layout *parts) {
+  static const char *const words[] = {"extensionsRequired", "KHR_mesh_quant", "EXT_mesh_gpu_instancing"};
+  for (size_t w = 0; w < sizeof words / sizeof *words; w++)
+    if (memmem(parts->json, parts->json_size, words[w], strlen(words[w])))
+      return true;
+  return false;
 }
 
 /** Takes the JSON; NULL where there is none of glTF 2. What is not JSON to the letter is Assimp's matter,
  * unless it may have what Assimp does not look at. */
 static vxm_status load(json_t **out, const layout *parts, const char *name, vxm_error *error) {
   json_error_t what;
+  errno = 0; /* jansson takes a lack of memory for damage in places */
   *out = parts->json ? json_loadb((const char *)parts->json, parts->json_size, JSON_ALLOW_NUL, &what) : NULL;
   const char *version = json_string_value(json_object_get(json_object_get(*out, "asset"), "version"));
   if (*out && (!version || strncmp(version, "2.", 2) != 0)) {
     json_decref(*out);
     *out = NULL;
-  } else if (parts->json && !*out &&
-             (contains(parts, "extensionsRequired") || contains(parts, "KHR_mesh_quant")))
+  } else if (parts->json && !*out && errno == ENOMEM)
+    return out_of_memory(error);
+  else if (parts->json && !*out && needs_look(parts))
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1},
                        "its JSON is damaged: line %d: %.150s", what.line, what.text);
   return VXM_OK;
@@ -101,7 +109,7 @@ static vxm_status rebuild(vxm_gltf *out, const json_t *root, const layout *parts
   size_t rest = request->size - (size_t)(behind - request->data);
   size_t before = parts->is_glb ? HEADER + CHUNK : 0;
   if (!json)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "not enough memory to read the file");
+    return out_of_memory(error);
   out->size = before + padded + rest;
   out->data = vxm_alloc(context, out->size, 1, error);
   if (!out->data) {

@@ -46,6 +46,7 @@ static const vxm_gltf_buffer *take_buffer(vxm_gltf_buffers *buffers, size_t inde
     buffer->data = buffers->binary;
     buffer->size = buffers->binary_size;
   }
+  buffers->size += buffer->asked ? 0 : buffer->size;
   buffer->asked = true;
   return buffer->data ? buffer : NULL;
 }
@@ -86,7 +87,7 @@ static const unsigned char *find_view(vxm_gltf_buffers *buffers, const json_t *v
 
 const char *vxm_gltf_find_elements(vxm_gltf_elements *out, vxm_gltf_buffers *buffers,
                                    const json_t *accessor) {
-  enum { BYTES_8_UNSIGNED = 5121, BYTES_16 = 5122, BYTES_16_UNSIGNED = 5123 };
+  enum { BYTES_16 = 5122, BYTES_16_UNSIGNED = 5123 };
   json_int_t kind = json_integer_value(json_object_get(accessor, "componentType"));
   size_t view_index, offset, size;
   *out =

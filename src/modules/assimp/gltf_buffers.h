@@ -15,7 +15,7 @@ typedef struct vxm_gltf_buffer {
   bool asked;
 } vxm_gltf_buffer;
 
-/** Buffers are read when they are first needed. Start from the first three members, end with
+/** Buffers are read when they are first needed. Start from the first five members, end with
  * vxm_gltf_buffers_free. */
 typedef struct vxm_gltf_buffers {
   const json_t *root;
@@ -25,6 +25,7 @@ typedef struct vxm_gltf_buffers {
   size_t binary_size;
   vxm_gltf_buffer *list;
   size_t count;
+  size_t size; /**< the bytes of all that were asked for */
 } vxm_gltf_buffers;
 
 enum { VXM_GLTF_BYTE = 5120, VXM_GLTF_FLOAT = 5126 };

@@ -13,6 +13,7 @@ typedef struct converter {
   vxm_gltf_buffers *buffers;
   unsigned char *floats;
   size_t size, capacity;
+  size_t taken; /**< the bytes of all elements so far */
 } converter;
 
 /* ---- What is to be converted ---- */
@@ -48,20 +49,32 @@ static bool is_quantized(const json_t *root, const json_t *mesh) {
   return false;
 }
 
+/** The mesh of a node that has bones, -1 if there is none. */
+static json_int_t mesh_with_bones(const json_t *node) {
+  const json_t *index = json_object_get(node, "mesh");
+  return json_object_get(node, "skin") && json_is_integer(index) ? json_integer_value(index) : -1;
+}
+
 /** The true size of such a mesh may stand in its bones, which are not applied. */
-static void warn_bones(const json_t *root, vxm_warnings *warnings) {
-  const json_t *node;
-  size_t n;
-  json_array_foreach(json_object_get(root, "nodes"), n, node) {
-    const json_t *index = json_object_get(node, "mesh");
-    if (json_object_get(node, "skin") && json_is_integer(index) && json_integer_value(index) >= 0 &&
-        is_quantized(root,
-                     json_array_get(json_object_get(root, "meshes"), (size_t)json_integer_value(index)))) {
-      vxm_warn(warnings, "meshes with bones have positions in whole numbers: their size and place are those "
-                         "without the bones, which are not applied");
-      return;
-    }
+static vxm_status warn_bones(const converter *c, vxm_warnings *warnings, vxm_error *error) {
+  const json_t *node, *mesh, *meshes = json_object_get(c->root, "meshes");
+  size_t n, m, count = json_array_size(meshes);
+  bool *has_bones = vxm_calloc(c->buffers->context, count, sizeof *has_bones, error), found = false;
+  if (!has_bones)
+    return VXM_ERROR_MEMORY;
+  json_array_foreach(json_object_get(c->root, "nodes"), n, node) {
+    json_int_t index = mesh_with_bones(node);
+    if (index >= 0 && (size_t)index < count)
+      has_bones[index] = true;
   }
+  json_array_foreach(meshes, m, mesh) {
+    found = found || (has_bones[m] && is_quantized(c->root, mesh));
+  }
+  vxm_free(c->buffers->context, has_bones);
+  if (found)
+    vxm_warn(warnings, "meshes with bones have positions in whole numbers: their size and place are those "
+                       "without the bones, which are not applied");
+  return VXM_OK;
 }
 
 /* ---- Conversion ---- */
@@ -100,11 +113,22 @@ static bool point_to_floats(converter *c, json_t *accessor, size_t offset) {
          json_object_set_new(accessor, "componentType", json_integer(VXM_GLTF_FLOAT)) == 0;
 }
 
+/** Finds the elements of an accessor, as vxm_gltf_find_elements. Accessors may share bytes, but not so often
+ * that a small file takes all memory there is. */
+static const char *find_elements(converter *c, vxm_gltf_elements *out, const json_t *accessor) {
+  enum { SHARED_MAX = 8 };
+  const char *failure = vxm_gltf_find_elements(out, c->buffers, accessor);
+  if (failure)
+    return failure;
+  c->taken += out->count * out->components * out->bytes;
+  return c->taken / SHARED_MAX > c->buffers->size ? "too many others lie over the same bytes" : NULL;
+}
+
 /** Converts one accessor of an attribute; what is no position may stay as it is where it cannot be. */
 static vxm_status convert(converter *c, json_t *accessor, const char *attribute, vxm_error *error) {
   vxm_gltf_elements elements;
   const char *name = c->buffers->request->name;
-  const char *failure = vxm_gltf_find_elements(&elements, c->buffers, accessor);
+  const char *failure = find_elements(c, &elements, accessor);
   if (failure && is_position(attribute))
     return vxm_fail_at(
         error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1},
@@ -135,9 +159,8 @@ vxm_status vxm_gltf_make_floats(unsigned char **floats, size_t *size, json_t *ro
   converter c = {.root = root, .buffers = buffers};
   const json_t *mesh, *primitive;
   size_t m, p;
-  vxm_status status = VXM_OK;
   *floats = NULL;
-  warn_bones(root, warnings);
+  vxm_status status = warn_bones(&c, warnings, error);
   json_array_foreach(json_object_get(root, "meshes"), m, mesh) {
     json_array_foreach(json_object_get(mesh, "primitives"), p, primitive) {
       if (status == VXM_OK)

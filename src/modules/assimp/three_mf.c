@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "modules/assimp/three_mf.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "modules/assimp/zip.h"
@@ -11,17 +12,17 @@ typedef struct slice {
   size_t size;
 } slice;
 
-enum { PIECE = 1 << 16, CARRIED = 256, NAMES = 24, PREFIX = 32, URI = 120 };
+enum { CARRIED = 256, NAMES = 24, PREFIX = 32, URI = 120 };
 
 /** What is known of a model while it goes by. */
 typedef struct look {
-  char text[CARRIED + PIECE]; /**< the last piece, and the end of the one before it */
   size_t carried;
   bool knows_head;
   char path[PREFIX +
             8]; /**< the attribute that names another file, such as "p:path"; empty if there is none */
   bool has_path;
-  char required[URI]; /**< an extension that is not read; empty if there is none */
+  char required[URI];                 /**< an extension that is not read; empty if there is none */
+  char text[CARRIED + VXM_ZIP_PIECE]; /**< the last piece, and the end of the one before it */
 } look;
 
 /* ---- The first tag ---- */
@@ -226,12 +227,25 @@ vxm_status vxm_three_mf_check(const vxm_reader_request *request, vxm_context *co
   while (more && status == VXM_OK && vxm_zip_next(&zip, &member)) {
     if (!is_model(&member))
       continue;
-    memset(seen, 0, sizeof *seen);
-    bool is_seen = vxm_zip_unpack(&member, context, look_at, seen);
+    memset(seen, 0, offsetof(look, text)); /* there may be many files of no size */
+    bool is_seen = vxm_zip_unpack(&zip, &member, context, look_at, seen);
     status = judge(seen, request->name, error);
     if (!is_seen && ++models > 1) /* only the production extension has more than one */
       status = refuse_files(request->name, error);
   }
   vxm_free(context, seen);
   return status;
+}
+
+vxm_status vxm_three_mf_narrow(unsigned char **out, const vxm_reader_request *request, vxm_context *context,
+                               vxm_error *error) {
+  *out = vxm_alloc(context, request->size, 1, error);
+  if (!*out)
+    return VXM_ERROR_MEMORY;
+  memcpy(*out, request->data, request->size);
+  if (!vxm_zip_narrow(*out, request->size)) {
+    vxm_free(context, *out);
+    *out = NULL;
+  }
+  return VXM_OK;
 }

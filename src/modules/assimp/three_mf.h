@@ -13,4 +13,14 @@
  */
 vxm_status vxm_three_mf_check(const vxm_reader_request *request, vxm_context *context, vxm_error *error);
 
+/**
+ * Makes an archive that Assimp can read: with minizip 1.1 it finds nothing where numbers have 64 bits, as
+ * lib3mf writes them all.
+ *
+ * @param out becomes a block of the context in place of the file's data, of the same size; NULL if Assimp can
+ * read it as it is
+ */
+vxm_status vxm_three_mf_narrow(unsigned char **out, const vxm_reader_request *request, vxm_context *context,
+                               vxm_error *error);
+
 #endif
