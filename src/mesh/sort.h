@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Sorting of 64-bit keys in linear time. */
+/** Sorting of 64-bit keys: of many in linear time, of few by insertion. */
 #ifndef VXM_MESH_SORT_H
 #define VXM_MESH_SORT_H
 
@@ -11,5 +11,16 @@ void vxm_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
 
 /** Sorts by the bits from `shift` on; keys that are alike in these stay in their order. */
 void vxm_sort_keys_above(uint64_t *keys, uint64_t *scratch, size_t count, unsigned shift);
+
+/** Sorts a few keys upward. */
+static inline void vxm_sort_few_keys(uint64_t *keys, size_t count) {
+  for (size_t i = 1; i < count; i++) {
+    uint64_t key = keys[i];
+    size_t j = i;
+    for (; j > 0 && keys[j - 1] > key; j--)
+      keys[j] = keys[j - 1];
+    keys[j] = key;
+  }
+}
 
 #endif

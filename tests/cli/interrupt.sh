@@ -29,33 +29,29 @@ interrupted() {
 interrupted voxelize "$work/in/rocket.off" -o "$work/out/x.rle" -r 1400
 interrupted bench "$work/in/rocket.off" --plot "$work/out/x.svg" --report "$work/out/x.json"
 
+# The program that runs as $job is to end by the signal that comes after each of these delays, the second at the latest.
+signal_twice() {
+  for delay; do
+    sleep "$delay"
+    kill -TERM "$job" 2>/dev/null || true # gone where the first one came before the program had begun
+  done
+  (sleep 5; kill -KILL "$job") 2>/dev/null 3<&- &
+  watch=$!
+  status=0
+  wait "$job" || status=$?
+  kill "$watch" 2>/dev/null || true
+  [ "$status" -eq 143 ] || { echo "FAILED: exit status $status"; cat "$work/err"; exit 1; }
+}
+
 # Where the work does not come to an end by itself: it waits for more to read.
 mkfifo "$work/fifo"
 exec 3<>"$work/fifo"
-"$VOXMEND" info - <"$work/fifo" >/dev/null 2>&1 3<&- &
+"$VOXMEND" info - <"$work/fifo" >/dev/null 2>"$work/err" 3<&- &
 job=$!
-for delay in 0.3 0.8; do
-  sleep "$delay"
-  kill -TERM "$job" 2>/dev/null || true # gone where the first one came before the program had begun
-done
-(sleep 5; kill -KILL "$job") 2>/dev/null 3<&- &
-watch=$!
-status=0
-wait "$job" || status=$?
-kill "$watch" 2>/dev/null || true
-[ "$status" -eq 143 ] || { echo "FAILED: exit status $status of a second signal"; exit 1; }
+signal_twice 0.3 0.8
 
 # A batch, which lets what is in work come to its end at the first one: here it never does.
 echo fifo >"$work/list.txt"
 "$VOXMEND" batch "$work/list.txt" -o "$work/batch" -r 8 >/dev/null 2>"$work/err" 3<&- &
 job=$!
-for delay in 1 0.5; do
-  sleep "$delay"
-  kill -TERM "$job" 2>/dev/null || true
-done
-(sleep 5; kill -KILL "$job") 2>/dev/null 3<&- &
-watch=$!
-status=0
-wait "$job" || status=$?
-kill "$watch" 2>/dev/null || true
-[ "$status" -eq 143 ] || { echo "FAILED: exit status $status of a batch"; cat "$work/err"; exit 1; }
+signal_twice 1 0.5

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/parity/parity_union.h"
 #include "base/threads.h"
+#include "mesh/sort.h"
 
 #include <string.h>
 
@@ -40,21 +41,11 @@ typedef struct slab {
 
 /* ---- A few records: sorted, they pair up to the ends of spans ---- */
 
-static void sort_few(uint64_t *keys, size_t count) {
-  for (size_t i = 1; i < count; i++) {
-    uint64_t key = keys[i];
-    size_t j = i;
-    for (; j > 0 && keys[j - 1] > key; j--)
-      keys[j] = keys[j - 1];
-    keys[j] = key;
-  }
-}
-
 static bool spans_along_rows(const slab *s, uint64_t *records, size_t count) {
   size_t row_bits = s->state->row_bits;
   int64_t length = s->state->window->fast_dim;
   bool any = false;
-  sort_few(records, count);
+  vxm_sort_few_keys(records, count);
   for (size_t i = 0; i < count;) {
     size_t row = records[i] / row_bits;
     int64_t begin = (int64_t)(records[i] - row * row_bits), end = length;
@@ -84,7 +75,7 @@ static bool spans_across(const slab *s, uint64_t *records, size_t count) {
     size_t fixed = slices ? inner : outer, place = slices ? outer : inner;
     records[i] = (fixed * row_bits + bit) * length + place;
   }
-  sort_few(records, count);
+  vxm_sort_few_keys(records, count);
   bool any = false;
   for (size_t i = 0; i < count;) {
     size_t column = records[i] / length, begin = records[i] - column * length, end = length;

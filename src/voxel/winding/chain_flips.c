@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/chain_flips.h"
+#include "mesh/sort.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -72,17 +73,10 @@ static int compare(const void *a, const void *b) {
 }
 
 static void sort_row(uint64_t *crossings, size_t count) {
-  if (count > INSERTED_MOST) {
+  if (count > INSERTED_MOST)
     qsort(crossings, count, sizeof *crossings, compare);
-    return;
-  }
-  for (size_t i = 1; i < count; i++) {
-    uint64_t moved = crossings[i];
-    size_t to = i;
-    for (; to > 0 && crossings[to - 1] > moved; to--)
-      crossings[to] = crossings[to - 1];
-    crossings[to] = moved;
-  }
+  else
+    vxm_sort_few_keys(crossings, count);
 }
 
 /** Writes where a row, whose first place is `base`, comes to be wound around at least once, or ceases to be,
