@@ -33,7 +33,8 @@ static double beyond(const border *b, const double p[3]) {
 
 /** Triangles of up to 7 voxels, some longer along x, most of them at the border. Corners of some lie on
  * centres. */
-static vxm_soup *random_triangles(vxm_rng *rng, const vxm_space *space, const border *b, int count) {
+static vxm_soup *random_triangles(vxm_rng *rng, const vxm_space *space, const border *b, int count,
+                                  double longest) {
   static const double sizes[6] = {0.2, 1, 2, 3, 5, 7};
   vxm_soup *soup = shape_empty(context);
   for (int i = 0; i < count; i++) {
@@ -44,7 +45,7 @@ static vxm_soup *random_triangles(vxm_rng *rng, const vxm_space *space, const bo
     for (int k = 0; k < 3; k++) {
       double at[3], off;
       for (int a = 0; a < 3; a++)
-        at[a] = centre[a] + (i % 9 == 0 && a == 0 ? 25 : size) * (vxm_rng_unit(rng) - 0.5);
+        at[a] = centre[a] + (i % 9 == 0 && a == 0 ? longest : size) * (vxm_rng_unit(rng) - 0.5);
       off = i % 5 ? 0.2 * vxm_rng_unit(rng) - beyond(b, at) : 0;
       for (int a = 0; a < 3; a++) {
         at[a] += off * b->normal[a];
@@ -201,11 +202,23 @@ static void check_window(vxm_rng *rng, const vxm_triangle_set *triangles, const 
     check_order(&job, meets, sum);
   } else
     check_pieces(&job);
+  if (!vxm_cells_fit_short(window)) {
+    free(meets);
+    free(maps);
+    free(cells);
+    free(window->words);
+    return;
+  }
   assert_true(vxm_middles_fit(window));
-  vxm_middles_fill(maps, window);
-  vxm_sieve_kernels_of(NULL)->shorten(cells, placed->cells, triangles->point_count);
-  job.middles = maps;
+  vxm_sieve_kernels_of(NULL)->shorten(cells, placed->cells, triangles->point_count, job.view.axis);
   job.short_cells = cells;
+  if (sum) {
+    check_builds(&job, meets, sum);
+    check_order(&job, meets, sum);
+  } else
+    check_pieces(&job);
+  vxm_middles_fill(maps, window);
+  job.middles = maps;
   if (sum)
     check_builds(&job, meets, sum);
   else
@@ -244,10 +257,13 @@ static void check_space(vxm_rng *rng, int round, bool walls, counts *sum) {
   vxm_space space = engine_space(1, 1, 1);
   for (int a = 0; a < 3; a++)
     space.dims[a] = 14 + (int64_t)vxm_rng_below(rng, a == layout.fast ? 60 : 8);
+  const bool is_long = !walls && round % 8 == 7; /* cells have no short numbers */
+  if (is_long)
+    space.dims[0] = 600 + (int64_t)vxm_rng_below(rng, 2000);
   border b = random_border(rng, &space);
   b.is_noise = walls;
-  vxm_soup *soup =
-      walls ? triangles_at_walls(rng, &space, sum ? 200 : 5000) : random_triangles(rng, &space, &b, 37);
+  vxm_soup *soup = walls ? triangles_at_walls(rng, &space, sum ? 200 : 5000)
+                         : random_triangles(rng, &space, &b, 37, is_long ? 1500 : 25);
   vxm_triangle_set triangles;
   vxm_split_rule rule = {.split_mode = VXM_SPLIT_MODE_WHOLE};
   assert_int_equal(vxm_triangle_set_create(&triangles, soup, rule, NULL), VXM_OK);
@@ -290,10 +306,12 @@ static void test_every_build_makes_the_same_maps(void **state) {
     for (size_t i = 0; i < count; i++)
       from[i] = vxm_rng_below(&rng, most) | vxm_rng_below(&rng, most) << VXM_CELL_BITS |
                 vxm_rng_below(&rng, most) << 2 * VXM_CELL_BITS;
-    build->shorten(cells, from, count);
+    const int first = (int)vxm_rng_below(&rng, 3), next = (first + 1 + (int)vxm_rng_below(&rng, 2)) % 3,
+              axis[3] = {first, next, 3 - first - next};
+    build->shorten(cells, from, count, axis);
     for (size_t i = 0; i < count; i++)
       for (int a = 0; a < 3; a++)
-        assert_int_equal(cells[i] >> a * VXM_SHORT_BITS & most, from[i] >> a * VXM_CELL_BITS & most);
+        assert_int_equal(cells[i] >> a * VXM_SHORT_BITS & most, from[i] >> axis[a] * VXM_CELL_BITS & most);
     for (size_t i = 0; i < count; i++)
       from[i] = vxm_rng_next(&rng) & vxm_rng_next(&rng);
     build->join(to, from, step, count);

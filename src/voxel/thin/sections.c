@@ -309,7 +309,7 @@ static bool is_far(const vxm_lattice *lattice, const vxm_point p[3]) {
 
 /** Whether a triangle is longer than some voxels. */
 static bool is_large(const vxm_lattice *lattice, const vxm_point p[3]) {
-  enum { LARGE = 8 };
+  enum { LARGE = 20 };
   int64_t longest = 0;
   for (int a = 0; a < 3; a++)
     longest = vxm_max(longest, vxm_max(vxm_max(p[0].at[a], p[1].at[a]), p[2].at[a]) -

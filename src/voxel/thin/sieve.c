@@ -28,24 +28,27 @@ bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
   sieve->cells = job->placed->cells;
   sieve->middles = job->middles;
   sieve->short_cells = job->short_cells;
-  for (int i = 1; i < 3; i++)
-    sieve->map_step[axis[i]] = (uint32_t)(64 * i * (int64_t)vxm_middle_words((size_t)bytes / 8));
+  sieve->map_bits = (uint32_t)(64 * (int64_t)vxm_middle_words((size_t)bytes / 8));
   sieve->short_origin = (uint32_t)view->origin;
-  for (int a = 0; a < 3 && job->middles; a++) {
-    sieve->short_step[a] = (uint32_t)view->step[a];
-    sieve->short_first |= (uint32_t)view->begin[a] << (VXM_SHORT_BITS * a);
-    sieve->short_last |= (uint32_t)view->end[a] << (VXM_SHORT_BITS * a);
+  sieve->row_bits = (uint32_t)view->step[axis[1]];
+  sieve->slice_bits = (uint32_t)view->step[slow];
+  for (int i = 0; i < 3 && job->middles; i++) {
+    sieve->short_first |= (uint32_t)sieve->begin[i] << (VXM_SHORT_BITS * i);
+    sieve->short_last |= (uint32_t)sieve->end[i] << (VXM_SHORT_BITS * i);
   }
   sieve->last = (int32_t)(bytes - 4);
   return true;
 }
 
-bool vxm_middles_fit(const vxm_window *window) {
+bool vxm_cells_fit_short(const vxm_window *window) {
   const int64_t longest = (1 << (VXM_SHORT_BITS - 1)) - 1;
+  return window->fast_dim < longest && window->middle_dim < longest && window->slow_dim < longest;
+}
+
+bool vxm_middles_fit(const vxm_window *window) {
   const size_t most = 1 << 22; /* words, so that bits of all maps have numbers of 32 bits */
   return window->slice_words == window->row_words * (size_t)window->middle_dim &&
-         window->fast_dim < longest && window->middle_dim < longest && window->slow_dim < longest &&
-         (size_t)(window->end - window->begin) * window->slice_words < most;
+         vxm_cells_fit_short(window) && (size_t)(window->end - window->begin) * window->slice_words < most;
 }
 
 void vxm_middles_fill(uint64_t *middles, const vxm_window *window) {

@@ -22,13 +22,14 @@ typedef struct vxm_sieve {
   int bits;     /**< of the lattice */
   int axis[3];
   int32_t begin[3], end[3];
-  int32_t step[3];         /**< bytes from a row to the next one, along the middle and the slow axis */
-  const uint64_t *cells;   /**< of the points */
-  const uint64_t *middles; /**< as in vxm_thin_job; and if they are there: */
-  const uint32_t *short_cells;
-  uint32_t map_step[3];             /**< bits from a map to that of two cells along an axis; 0: the fast */
+  int32_t step[3];             /**< bytes from a row to the next one, along the middle and the slow axis */
+  const uint64_t *cells;       /**< of the points */
+  const uint32_t *short_cells; /**< as in vxm_thin_job */
+  const uint64_t *middles;     /**< as in vxm_thin_job; and if they are there: */
+  uint32_t map_bits;           /**< from a map to the next one */
   uint32_t short_first, short_last; /**< cells that have a voxel in the window */
-  uint32_t short_step[3], short_origin; /**< from the number of a cell to the bit of the voxel behind it */
+  uint32_t row_bits, slice_bits;    /**< from a row and a slice to the next one */
+  uint32_t short_origin;            /**< from the cell before all voxels to the bit of the voxel behind it */
 } vxm_sieve;
 
 /** Boxes of more cells along an axis are kept: a row of their voxels is to fit 32 bits, from any bit of a
@@ -44,6 +45,9 @@ enum { VXM_SIEVE_BATCH = 2048 };
 
 /** The sieve of a job; false if it has none, as points or the solid are not in its form. */
 bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job);
+
+/** Whether cells along the axes of a window can have short numbers (VXM_SHORT_BITS). */
+bool vxm_cells_fit_short(const vxm_window *window);
 
 /** Whether a window can have the maps of vxm_thin_job: it has no padding between slices, and is not too
  * large.

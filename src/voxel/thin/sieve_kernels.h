@@ -15,8 +15,8 @@ typedef struct vxm_sieve_kernels {
   size_t (*sift)(const vxm_sieve *sieve, uint32_t *kept, size_t *begin, size_t end);
   /** to[i] = from[i] | from[i - step], if that is there, for all `count` words. */
   void (*join)(uint64_t *to, const uint64_t *from, size_t step, size_t count);
-  /** Short numbers of cells, as vxm_thin_job has them. */
-  void (*shorten)(uint32_t *to, const uint64_t *cells, size_t count);
+  /** Short numbers of cells, as vxm_thin_job has them. @param axis the fast, the middle and the slow one */
+  void (*shorten)(uint32_t *to, const uint64_t *cells, size_t count, const int axis[3]);
   /** Whether links that a triangle crosses may have no voxel at their ends, if the solid is on one side of
    * it, 1 for that to which the normal points, else -1. @param unsure NULL, or becomes such links: they are
    * boxes, and empty ones lie from INT64_MAX to INT64_MIN */

@@ -206,22 +206,26 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_added_v
   return status;
 }
 
-/** Makes the maps where they cost less than they save, and there is memory. */
-static void make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window) {
-  size_t words = (size_t)(window->end - window->begin) * window->slice_words,
-         points = job->triangles->point_count;
-  if (job->directions > VXM_LINK_AXES || job->placed->wide || words > job->triangles->triangle_count ||
-      !vxm_middles_fit(window))
-    return;
-  if (vxm_renew(thin->context, (void **)&thin->maps, &thin->map_words, vxm_all_middle_words(words),
-                sizeof *thin->maps, NULL) != VXM_OK ||
+/** Shortens the numbers of cells where that is possible, and there is memory. */
+static void make_short_cells(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window) {
+  const size_t points = job->triangles->point_count;
+  if (job->directions > VXM_LINK_AXES || job->placed->wide || !vxm_cells_fit_short(window) ||
       vxm_renew(thin->context, (void **)&thin->short_cells, &thin->short_room, points,
                 sizeof *thin->short_cells, NULL) != VXM_OK)
     return;
-  vxm_middles_fill(thin->maps, window);
-  vxm_sieve_kernels_of(NULL)->shorten(thin->short_cells, job->placed->cells, points);
-  job->middles = thin->maps;
+  vxm_sieve_kernels_of(NULL)->shorten(thin->short_cells, job->placed->cells, points, job->view.axis);
   job->short_cells = thin->short_cells;
+}
+
+/** Makes the maps where they cost less than they save, and there is memory. */
+static void make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window) {
+  size_t words = (size_t)(window->end - window->begin) * window->slice_words;
+  if (!job->short_cells || words > job->triangles->triangle_count || !vxm_middles_fit(window) ||
+      vxm_renew(thin->context, (void **)&thin->maps, &thin->map_words, vxm_all_middle_words(words),
+                sizeof *thin->maps, NULL) != VXM_OK)
+    return;
+  vxm_middles_fill(thin->maps, window);
+  job->middles = thin->maps;
 }
 
 /** Orders the triangles where the window does not stay in the cache, and the sieve is for all of them; not
@@ -258,6 +262,7 @@ vxm_status vxm_thin_add(vxm_thin_adder *thin, const vxm_window *window, int64_t 
                       .directions = separating == 26 ? VXM_LINK_DIRECTIONS : VXM_LINK_AXES};
   vxm_added_voxels to = {NULL, confidence};
   vxm_status status = VXM_OK;
+  make_short_cells(thin, &job, window);
   make_middles(thin, &job, window);
   if (!job.middles)
     status = make_order(thin, &job, window, error);
