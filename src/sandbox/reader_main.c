@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * voxmend-reader: reads one file through a module, for a process that must outlive it (sandbox.h). The file
+ * voxmend-reader: reads one file through a module, for a process that must outlive it (reader_process.h). The file
  * comes over standard input, which is a socket, and the soup or the grid goes back over it. Before it looks
  * at the file it gives up all that reading does not take (confine.h).
  */

@@ -26,7 +26,7 @@ typedef struct vxm_references {
   { .folder = -1 }
 
 /**
- * Opens what is asked for, or warnings that it is refused.
+ * Opens what is asked for, or notes in a warning that it is refused.
  *
  * @param largest bytes that may be handed over
  * @return a descriptor of a regular file with its size, or -1

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * .litematic, Litematica's: a region with a palette of blocks, and their numbers packed into 64-bit words as
- * closely as possible, across the borders of words too; x fastest, then z, then y (up). block_file.c reads
+ * closely as possible, across the borders of words too; x fastest, then z, then y (up). block_read.c reads
  * it.
  */
 #include "gridio/common/format.h"

@@ -2,7 +2,7 @@
 /**
  * .schem, Sponge's schematic: a palette of blocks, and the number of each block, x fastest, then z, then y
  * (up). Of the versions the second is written, which WorldEdit, FAWE, Amulet and mcschematic have in common;
- * block_file.c reads it.
+ * block_read.c reads it.
  */
 #include "gridio/common/format.h"
 #include "gridio/formats/block_read.h"
