@@ -47,7 +47,7 @@ bool vxm_wire_send_failure(int channel, const vxm_error *error) {
 }
 
 bool vxm_wire_send_warning(int channel, const char *text) {
-  char line[VXM_NOTE_LENGTH] = "";
+  char line[VXM_WARNING_LENGTH] = "";
   strncpy(line, text, sizeof line - 1);
   return vxm_parcel_put_kind(channel, VXM_PARCEL_WARNING) && vxm_parcel_put(channel, line, sizeof line);
 }
@@ -212,7 +212,7 @@ static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *e
   /* What no memory holds is not asked for either, so that products of sizes stay in range. */
   const uint64_t most = UINT64_C(1) << 40;
   if (counts.vertices > VXM_VERTICES_MAX || counts.faces > most || counts.corners > most ||
-      counts.tags > UINT32_MAX || counts.tag_bytes > most || counts.warnings > VXM_NOTES_MAX)
+      counts.tags > UINT32_MAX || counts.tag_bytes > most || counts.warnings > VXM_WARNINGS_MAX)
     return vxm_parcel_damaged(error);
   status = receive_arrays(soup, sender, &counts, error);
   if (status == VXM_OK)
@@ -257,7 +257,7 @@ static vxm_status receive_reference(vxm_process *sender, vxm_wire_listener *list
 }
 
 static vxm_status receive_warning(vxm_process *sender, vxm_wire_listener *listener, vxm_error *error) {
-  char line[VXM_NOTE_LENGTH];
+  char line[VXM_WARNING_LENGTH];
   vxm_status status = vxm_process_receive(sender, line, sizeof line, error);
   if (status != VXM_OK)
     return status;

@@ -77,7 +77,7 @@ static void test_many_elements(void **state) {
     bytes_text(&b, "1 2 3\n");
   vxm_soup *soup = read_data(b.data, b.size, "a.ply");
   expect_counts(soup, 1, 0);
-  expect_note(soup, "more values than the header says; the rest is ignored, 40001 such lines in all");
+  expect_warning(soup, "more values than the header says; the rest is ignored, 40001 such lines in all");
   vxm_soup_destroy(soup);
   bytes_free(&b);
 }

@@ -65,7 +65,7 @@ static void test_stool(void **state) {
   for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
     vxm_soup *soup = read_with(&b, names[n], 0);
     assert_string_equal(soup->format, "step");
-    expect_no_notes(soup);
+    expect_no_warnings(soup);
     expect_tags(soup, tags);
     vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);

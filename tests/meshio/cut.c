@@ -224,7 +224,7 @@ static void cut_everywhere(make_fn *make, int variants, const char *name) {
       }
       vxm_soup *soup = read_data(f.b.data, f.b.size, name);
       assert_int_equal(soup->face_count, QUADS);
-      expect_no_notes(soup);
+      expect_no_warnings(soup);
       for (size_t q = 0; q < QUADS; q++)
         assert_true(is_face(soup, q, &f, &s));
       vxm_soup_destroy(soup);
@@ -268,12 +268,12 @@ static void test_last_numbers(void **state) {
   /* The last index is believed where no more could follow, or where a neighbour has the edge. */
   vxm_soup *soup = read_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", "x.off");
   expect_counts(soup, 3, 1);
-  expect_no_notes(soup);
+  expect_no_warnings(soup);
   vxm_soup_destroy(soup);
   /* Of four faces announced three are there; the third ends in what may be half a number. */
   soup = read_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 1 2 3", "x.off");
   expect_counts(soup, 4, 2);
-  expect_note(soup, "line 9: the file ends after 2 of 4 faces");
+  expect_warning(soup, "line 9: the file ends after 2 of 4 faces");
   vxm_soup_destroy(soup);
   soup = read_text(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -281,25 +281,25 @@ static void test_last_numbers(void **state) {
       "3 0 1 2\n3 2 1 0",
       "x.ply");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "line 14: the file ends after 1 of 3 elements \"face\"");
+  expect_warning(soup, "line 14: the file ends after 1 of 3 elements \"face\"");
   vxm_soup_destroy(soup);
   soup = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 0.5 1.2", "x.obj");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "line 5: the file ends within a vertex; skipped");
+  expect_warning(soup, "line 5: the file ends within a vertex; skipped");
   vxm_soup_destroy(soup);
   soup = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 0.5 1.2 3", "x.obj");
-  expect_note(soup, "line 5: the file ends without a line end; its last line may be cut off");
+  expect_warning(soup, "line 5: the file ends without a line end; its last line may be cut off");
   vxm_soup_destroy(soup);
   soup = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", "x.obj");
-  expect_note(soup, "line 6: the file may be cut off: no face uses 1 of its 4 vertices");
+  expect_warning(soup, "line 6: the file may be cut off: no face uses 1 of its 4 vertices");
   vxm_soup_destroy(soup);
   soup = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2/2/1 3/3", "x.obj");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "line 4: the file ends without a line end; its last line may be cut off");
+  expect_warning(soup, "line 4: the file ends without a line end; its last line may be cut off");
   vxm_soup_destroy(soup);
   /* Lines use vertices too. */
   soup = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nl 3 4\n", "x.obj");
-  expect_no_notes(soup);
+  expect_no_warnings(soup);
   vxm_soup_destroy(soup);
 }
 

@@ -12,7 +12,7 @@ static void expect_quad(const char *faces) {
   expect_vertex(soup, 2, 1.0, 1.0, 0.0);
   expect_face(soup, 0, 4, 0, 1, 2, 3);
   assert_string_equal(soup->format, "obj");
-  expect_no_notes(soup);
+  expect_no_warnings(soup);
   vxm_soup_destroy(soup);
 }
 
@@ -53,7 +53,7 @@ static void test_vertices(void **state) {
   expect_counts(soup, 7, 1);
   for (size_t v = 0; v < 7; v++)
     expect_vertex(soup, v, 1.0, 2.0, 3.0);
-  expect_no_notes(soup);
+  expect_no_warnings(soup);
   vxm_soup_destroy(soup);
   soup = read_text("v 1 2\nv 3 4\nv 5\nv\nv x 1.#IND nan\nv -inf 0 NaN\nf 1 2 3\n", "x.obj");
   expect_counts(soup, 6, 1);
@@ -62,9 +62,9 @@ static void test_vertices(void **state) {
   expect_vertex(soup, 3, (double)NAN, (double)NAN, (double)NAN);
   expect_vertex(soup, 4, (double)NAN, (double)NAN, (double)NAN);
   expect_vertex(soup, 5, -HUGE_VAL, 0.0, (double)NAN);
-  expect_note(soup, "line 1: vertex has two coordinates; z taken as 0, 2 such vertices in all");
-  expect_note(soup, "line 3: vertex has too few coordinates; taken as NaN, 2 such");
-  expect_note(soup, "line 5: coordinate is not a number; taken as NaN, 2 such");
+  expect_warning(soup, "line 1: vertex has two coordinates; z taken as 0, 2 such vertices in all");
+  expect_warning(soup, "line 3: vertex has too few coordinates; taken as NaN, 2 such");
+  expect_warning(soup, "line 5: coordinate is not a number; taken as NaN, 2 such");
   vxm_soup_destroy(soup);
 }
 
@@ -76,15 +76,15 @@ static void test_damage(void **state) {
   expect_counts(soup, 4, 2);
   expect_face(soup, 0, 3, 0, 1, 2); /* before its vertices */
   expect_face(soup, 1, 3, 1, 2, 3);
-  expect_note(soup, "line 6: face names vertex 0 (numbering starts at 1); skipped, 2 such faces in all");
-  expect_note(soup, "line 7: face names a vertex that does not exist; skipped, 3 such");
-  expect_note(soup, "line 8: face has fewer than 3 corners; skipped, 2 such");
-  expect_note(soup, "line 10: face has a corner that is no vertex number; skipped, 2 such");
+  expect_warning(soup, "line 6: face names vertex 0 (numbering starts at 1); skipped, 2 such faces in all");
+  expect_warning(soup, "line 7: face names a vertex that does not exist; skipped, 3 such");
+  expect_warning(soup, "line 8: face has fewer than 3 corners; skipped, 2 such");
+  expect_warning(soup, "line 10: face has a corner that is no vertex number; skipped, 2 such");
   assert_int_equal(soup->warnings.count, 4);
   vxm_soup_destroy(soup);
   soup = read_text(QUAD "l 1 2 3\n", "x.obj");
   expect_counts(soup, 4, 0);
-  expect_note(soup, "no faces, only 1 lines");
+  expect_warning(soup, "no faces, only 1 lines");
   vxm_soup_destroy(soup);
   text_fails("# nothing\n", "x.obj", "not a mesh");
   text_fails("g a\nusemtl b\n", "x.obj", "not a mesh");

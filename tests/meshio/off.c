@@ -11,7 +11,7 @@ static void expect_tetrahedron(const char *text) {
   expect_face(soup, 0, 3, 0, 2, 1);
   expect_face(soup, 3, 3, 1, 2, 3);
   assert_string_equal(soup->format, "off");
-  expect_no_notes(soup);
+  expect_no_warnings(soup);
   vxm_soup_destroy(soup);
 }
 
@@ -59,7 +59,7 @@ static void test_edge_counts(void **state) {
     expect_counts(soup, 4, 4);
     expect_vertex(soup, 0, 0.0, 0.0, 0.0);
     expect_vertex(soup, 1, 1.0, 0.0, 0.0);
-    expect_note(soup, "line 2: more than three counts; the rest of the line is passed over");
+    expect_warning(soup, "line 2: more than three counts; the rest of the line is passed over");
     vxm_soup_destroy(soup);
   }
   text_fails("OFF\n3 1 0 99\n0 0 0 1 0 0 0 1 0\n3 0 1 2\n", "x.off",
@@ -70,7 +70,7 @@ static void test_missing_word(void **state) {
   (void)state;
   vxm_soup *soup = read_text("4 4 6\n" TETRAHEDRON, "x.off");
   expect_counts(soup, 4, 4);
-  expect_note(soup, "line 1: no OFF keyword; the file begins");
+  expect_warning(soup, "line 1: no OFF keyword; the file begins");
   vxm_soup_destroy(soup);
   soup = read_text("4 4 6\n" TETRAHEDRON, "-");
   expect_counts(soup, 4, 4);
@@ -97,9 +97,9 @@ static void test_prefixes(void **state) {
       expect_vertex(soup, 2, 20.0, 21.0, 22.0);
       expect_face(soup, 0, 3, 2, 1, 0);
       if (four)
-        expect_note(soup, "4 coordinates");
+        expect_warning(soup, "4 coordinates");
       else
-        expect_no_notes(soup);
+        expect_no_warnings(soup);
       vxm_soup_destroy(soup);
       bytes_free(&text);
     }
@@ -110,7 +110,7 @@ static void test_dimensions(void **state) {
   vxm_soup *soup = read_text("nOFF 2\n3 1 0\n0 1\n2 3\n4 5\n3 0 1 2\n", "x.off");
   expect_counts(soup, 3, 1);
   expect_vertex(soup, 1, 2.0, 3.0, 0.0);
-  expect_note(soup, "2 coordinates");
+  expect_warning(soup, "2 coordinates");
   vxm_soup_destroy(soup);
   soup = read_text("4nOFF 4 3 1 0\n0 1 2 3 4\n5 6 7 8 9\n1 1 1 1 1\n3 0 1 2\n", "x.off");
   expect_counts(soup, 3, 1);
@@ -148,7 +148,7 @@ static void test_colours(void **state) {
     expect_counts(soup, 4, 3);
     expect_face(soup, 1, 4, 3, 2, 1, 0);
     expect_face(soup, 2, 3, 1, 2, 3);
-    expect_no_notes(soup);
+    expect_no_warnings(soup);
     vxm_soup_destroy(soup);
   }
 }
@@ -185,21 +185,21 @@ static void test_damage(void **state) {
   expect_vertex(soup, 3, 0.0, 0.0, 1.0);
   expect_face(soup, 0, 3, 0, 1, 2);
   expect_face(soup, 1, 3, 1, 2, 3);
-  expect_note(soup, "line 4: coordinate is not a number");
-  expect_note(soup, "line 5: vertex has too few coordinates");
-  expect_note(soup, "line 8: face names a vertex that does not exist; skipped");
-  expect_note(soup, "line 9: face is not a list of whole numbers; skipped, 2 such faces in all");
-  expect_note(soup, "line 10: face has fewer than 3 corners");
-  expect_note(soup, "line 11: face has fewer indices than it announces");
-  expect_note(soup, "line 14: more than announced; ignored (lines: 1)");
+  expect_warning(soup, "line 4: coordinate is not a number");
+  expect_warning(soup, "line 5: vertex has too few coordinates");
+  expect_warning(soup, "line 8: face names a vertex that does not exist; skipped");
+  expect_warning(soup, "line 9: face is not a list of whole numbers; skipped, 2 such faces in all");
+  expect_warning(soup, "line 10: face has fewer than 3 corners");
+  expect_warning(soup, "line 11: face has fewer indices than it announces");
+  expect_warning(soup, "line 14: more than announced; ignored (lines: 1)");
   vxm_soup_destroy(soup);
   soup = read_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0", "x.off");
   expect_counts(soup, 4, 1);
-  expect_note(soup, "line 8: the file ends after 1 of 4 faces");
+  expect_warning(soup, "line 8: the file ends after 1 of 4 faces");
   vxm_soup_destroy(soup);
   soup = read_text("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "x.off");
   expect_counts(soup, 3, 0);
-  expect_note(soup, "no faces");
+  expect_warning(soup, "no faces");
   vxm_soup_destroy(soup);
 }
 
@@ -275,7 +275,7 @@ static void test_random_files(void **state) {
     random_file(&text, &rng, soup);
     vxm_soup *back = read_data(text.data, text.size, "x.off");
     expect_same(soup, back);
-    expect_no_notes(back);
+    expect_no_warnings(back);
     vxm_soup_destroy(back);
     /* Any beginning of it is read as far as it goes, or refused in one line. */
     for (int k = 0; k < 10; k++) {
@@ -343,17 +343,17 @@ static void test_binary(void **state) {
     expect_counts(soup, 4, 2);
     expect_vertex(soup, 2, 20.5, 21.5, 22.5);
     expect_face(soup, 1, 4, 3, 2, 1, 0);
-    expect_no_notes(soup);
+    expect_no_warnings(soup);
     vxm_soup_destroy(soup);
     /* Cut off within the last face, and before any. */
     soup = read_data(b.data, b.size - 1, "x.off");
     expect_counts(soup, 4, 1);
-    expect_note(soup, "the file ends after 1 of 2 faces");
+    expect_warning(soup, "the file ends after 1 of 2 faces");
     vxm_soup_destroy(soup);
     read_fails(b.data, b.size - 60, "x.off", VXM_ERROR_FORMAT, "x.off: byte");
     bytes_add(&b, "tail", 4);
     soup = read_data(b.data, b.size, "x.off");
-    expect_note(soup, "more than announced; ignored (bytes: 4)");
+    expect_warning(soup, "more than announced; ignored (bytes: 4)");
     vxm_soup_destroy(soup);
     bytes_free(&b);
   }

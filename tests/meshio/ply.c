@@ -58,7 +58,7 @@ static void test_text(void **state) {
       char *text = with_newlines(texts[i], newlines[k]);
       vxm_soup *soup = read_text(text, "x.ply");
       expect_square(soup);
-      expect_no_notes(soup);
+      expect_no_warnings(soup);
       assert_string_equal(soup->format, "ply ascii");
       vxm_soup_destroy(soup);
       free(text);
@@ -71,33 +71,33 @@ static void test_damaged_text(void **state) {
   expect_counts(soup, 4, 1);
   expect_vertex(soup, 1, 1.0, (double)NAN, 0.0);
   expect_vertex(soup, 2, (double)NAN, (double)NAN, (double)NAN);
-  expect_note(soup, "line 11: coordinate is not a number");
-  expect_note(soup, "line 12: line has fewer values than the header says, 2 such lines");
+  expect_warning(soup, "line 11: coordinate is not a number");
+  expect_warning(soup, "line 12: line has fewer values than the header says, 2 such lines");
   vxm_soup_destroy(soup);
   /* Values that the header does not know of. */
   soup = read_text(HEADER "0 0 0 9 9\n1 0 0 9 9\n1 1 0 9 9\n0 1 0 9 9\n3 0 1 2 7\n4 3 2 1 0 7\n", "x.ply");
   expect_square(soup);
-  expect_note(soup, "line 10: line has more values than the header says");
+  expect_warning(soup, "line 10: line has more values than the header says");
   vxm_soup_destroy(soup);
   soup = read_text("ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 6\n" LIST "end_header\n"
                    "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n3 0 1 3\n3 0 -1 2\n2 0 1\n3 0 1 x\nx 1 2 3\nrest\n",
                    "x.ply");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "line 14: face names a vertex that does not exist; skipped, 2 such");
-  expect_note(soup, "line 16: face has fewer than 3 corners");
-  expect_note(soup, "line 17: face is not a list of whole numbers; skipped, 2 such");
-  expect_note(soup, "line 19: more than announced; ignored (lines: 1)");
+  expect_warning(soup, "line 14: face names a vertex that does not exist; skipped, 2 such");
+  expect_warning(soup, "line 16: face has fewer than 3 corners");
+  expect_warning(soup, "line 17: face is not a list of whole numbers; skipped, 2 such");
+  expect_warning(soup, "line 19: more than announced; ignored (lines: 1)");
   vxm_soup_destroy(soup);
   soup = read_text(HEADER "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 3 2", "x.ply");
   expect_counts(soup, 4, 1);
-  expect_note(soup, "line 15: the file ends after 1 of 2 elements \"face\"");
+  expect_warning(soup, "line 15: the file ends after 1 of 2 elements \"face\"");
   vxm_soup_destroy(soup);
   /* Faces first, then too few vertices for some of them. */
   soup = read_text("ply\nformat ascii 1.0\nelement face 2\n" LIST "element vertex 5\n" XYZ "end_header\n"
                    "3 0 1 2\n3 2 3 4\n0 0 0\n1 0 0\n1 1 0\n",
                    "x.ply");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "vertices that are cut off; skipped (faces: 1)");
+  expect_warning(soup, "vertices that are cut off; skipped (faces: 1)");
   vxm_soup_destroy(soup);
 }
 
@@ -128,18 +128,18 @@ static void test_no_faces(void **state) {
   vxm_soup *soup =
       read_text("ply\nformat ascii 1.0\nelement vertex 2\n" XYZ "end_header\n0 0 0\n1 0 0\n", "x.ply");
   expect_counts(soup, 2, 0);
-  expect_note(soup, "no faces");
+  expect_warning(soup, "no faces");
   vxm_soup_destroy(soup);
   soup = read_text("ply\nformat ascii 1.0\nend_header\n", "x.ply");
   expect_counts(soup, 0, 0);
-  expect_note(soup, "no vertices");
+  expect_warning(soup, "no vertices");
   vxm_soup_destroy(soup);
   soup = read_text("ply\nformat ascii 1.0\nelement vertex 2\nproperty int x\nproperty int y\nelement face 1\n"
                    "property list uchar int corners\nend_header\n0 0\n1 0\n3 0 1 1\n",
                    "x.ply");
   expect_counts(soup, 2, 0);
-  expect_note(soup, "line 3: vertices have no z; taken as 0");
-  expect_note(soup, "line 6: faces have no list vertex_indices");
+  expect_warning(soup, "line 3: vertices have no z; taken as 0");
+  expect_warning(soup, "line 6: faces have no list vertex_indices");
   vxm_soup_destroy(soup);
 }
 
@@ -339,7 +339,7 @@ static void test_binary_header_ends(void **state) {
     bytes b = binary_square(header, ends[i][0], ends[i][1]);
     vxm_soup *soup = read_data(b.data, b.size, "x.ply");
     expect_square(soup);
-    expect_no_notes(soup);
+    expect_no_warnings(soup);
     vxm_soup_destroy(soup);
     bytes_free(&b);
   }
@@ -363,7 +363,7 @@ static void test_damaged_binary(void **state) {
   size_t body = b.size - 78; /* 48 bytes of vertices, 13 and 17 of faces */
   vxm_soup *soup = read_data(b.data, b.size - 1, "x.ply");
   expect_counts(soup, 4, 1);
-  expect_note(soup, "the file ends after 1 of 2 elements \"face\"");
+  expect_warning(soup, "the file ends after 1 of 2 elements \"face\"");
   vxm_soup_destroy(soup);
   read_fails(b.data, body + 48, "x.ply", VXM_ERROR_FORMAT, "after 0 of 2 elements \"face\"");
   read_fails(b.data, body + 30, "x.ply", VXM_ERROR_FORMAT, "after 2 of 4 elements \"vertex\"");
@@ -373,8 +373,8 @@ static void test_damaged_binary(void **state) {
   expect_counts(soup, 4, 1);
   char note[64];
   snprintf(note, sizeof note, "byte %zu: face names a vertex that does not exist", body + 48);
-  expect_note(soup, note);
-  expect_note(soup, "more than announced; ignored (bytes: 2)");
+  expect_warning(soup, note);
+  expect_warning(soup, "more than announced; ignored (bytes: 2)");
   vxm_soup_destroy(soup);
   bytes_free(&b);
   /* Counts that no file could hold. */
@@ -423,7 +423,7 @@ static void test_strips(void **state) {
     expect_face(soup, 1, 3, 2, 1, 3);
     expect_face(soup, 2, 3, 4, 3, 2);
     expect_face(soup, 3, 3, 0, 1, 4);
-    expect_note(soup, "strip names a vertex that does not exist");
+    expect_warning(soup, "strip names a vertex that does not exist");
     vxm_soup_destroy(soup);
     bytes_free(&b);
   }

@@ -71,7 +71,7 @@ static void test_soup(void **state) {
     for (size_t f = 0; f < sizes[i]; f++)
       assert_int_equal(soup->face_tags[f], f % 2);
     assert_int_equal(soup->warnings.count, 1);
-    assert_string_equal(soup->warnings.text[0], "a note?of two lines"); /* warnings keep to one line */
+    assert_string_equal(soup->warnings.text[0], "a warning?of two lines"); /* warnings keep to one line */
     vxm_soup_destroy(soup);
     free(data);
   }
@@ -335,7 +335,7 @@ static void test_references(void **state) {
     fails(list, VXM_ERROR_RANGE, cases[c].got);
     assert_int_equal(references.asked, 13);
     assert_int_equal(references.refused, cases[c].refused);
-    assert_true(references.warnings.count > 0 && references.warnings.count <= VXM_NOTES_MAX / 2);
+    assert_true(references.warnings.count > 0 && references.warnings.count <= VXM_WARNINGS_MAX / 2);
   }
   assert_non_null(strstr(references.warnings.text[0],
                          "\"fifo\", which it refers to, was not opened: it is not a regular"));

@@ -62,7 +62,7 @@ static void test_transforms(void **state) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     vxm_soup *soup = read_gltf(cases[i].node, TRIANGLES);
     expect_counts(soup, 4, 4);
-    expect_no_notes(soup);
+    expect_no_warnings(soup);
     expect_body(soup, cases[i].bounds, cases[i].volume, 1e-6);
     vxm_soup_destroy(soup);
   }
@@ -112,9 +112,9 @@ static void test_lines_and_points(void **state) {
     vxm_soup *soup = read_gltf("{\"mesh\":0}", primitive);
     assert_int_equal(soup->face_count, 0);
     assert_int_equal(soup->tag_count, 0);
-    expect_note(soup, mode == 0 ? "lines and points are skipped (elements: 12)"
-                                : "lines and points are skipped (elements: 6)");
-    expect_note(soup, "the file has no faces");
+    expect_warning(soup, mode == 0 ? "lines and points are skipped (elements: 12)"
+                                   : "lines and points are skipped (elements: 6)");
+    expect_warning(soup, "the file has no faces");
     vxm_soup_destroy(soup);
   }
 }
@@ -200,7 +200,7 @@ static void test_quantized(void **state) {
       bytes b = quantized(kinds[k].kind, n, numbers, "");
       vxm_soup *soup = read_data(b.data, b.size, "a.glb");
       expect_counts(soup, 4, 4);
-      expect_no_notes(soup);
+      expect_no_warnings(soup);
       for (size_t i = 0; i < 12; i++) {
         double whole = (double)numbers[i], wanted = n ? fmax(whole / (double)most, -1) : whole;
         assert_true(soup->positions[i] == (double)(float)wanted);
@@ -224,7 +224,7 @@ static void test_quantized_scale(void **state) {
   bytes_free(&b);
   b = quantized(5122, false, numbers, ",\"skin\":0");
   soup = read_data(b.data, b.size, "a.glb");
-  expect_note(soup, "meshes with bones have positions in whole numbers");
+  expect_warning(soup, "meshes with bones have positions in whole numbers");
   vxm_soup_destroy(soup);
   bytes_free(&b);
 }

@@ -27,7 +27,7 @@ static void test_content_before_name(void **state) {
         vxm_soup *soup = read_text(text, files[k]);
         assert_string_equal(soup->format, forms[i].format);
         expect_counts(soup, 3, 1);
-        expect_no_notes(soup);
+        expect_no_warnings(soup);
         vxm_soup_destroy(soup);
       }
 }

@@ -13,7 +13,7 @@ static void expect_one(const char *text) {
   expect_face(soup, 0, 3, 0, 1, 2);
   assert_string_equal(soup->format, "stl ascii");
   assert_int_equal(soup->tag_count, 0);
-  expect_no_notes(soup);
+  expect_no_warnings(soup);
   vxm_soup_destroy(soup);
 }
 
@@ -51,7 +51,7 @@ static void test_odd_beginnings(void **state) {
   bytes_free(&b);
   soup = read_text("solid x\n" ONE, "x.stl");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "line 9: the file ends without endsolid; it may be cut off");
+  expect_warning(soup, "line 9: the file ends without endsolid; it may be cut off");
   vxm_soup_destroy(soup);
   /* Some other text under this name is not taken for facets. */
   char text[500];
@@ -84,17 +84,17 @@ static void test_damaged_text(void **state) {
                 "x.stl");
   expect_counts(soup, 7, 2);
   expect_face(soup, 1, 4, 3, 4, 5, 6);
-  expect_note(soup, "line 2: facet has a coordinate that is not a number; skipped, 2 such");
-  expect_note(soup, "line 23: facet has more than 3 vertices; kept as a polygon");
-  expect_note(soup, "line 31: facet has fewer than 3 vertices; skipped");
-  expect_note(soup, "line 37: vertex outside of a facet");
-  expect_note(soup, "line 29: word that STL does not have; ignored, 2 such words");
+  expect_warning(soup, "line 2: facet has a coordinate that is not a number; skipped, 2 such");
+  expect_warning(soup, "line 23: facet has more than 3 vertices; kept as a polygon");
+  expect_warning(soup, "line 31: facet has fewer than 3 vertices; skipped");
+  expect_warning(soup, "line 37: vertex outside of a facet");
+  expect_warning(soup, "line 29: word that STL does not have; ignored, 2 such words");
   vxm_soup_destroy(soup);
   /* Cut off: a facet that has all three vertices counts. */
   soup = read_text("solid x\n" ONE "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 2",
                    "x.stl");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "line 13: the file ends within a facet");
+  expect_warning(soup, "line 13: the file ends within a facet");
   vxm_soup_destroy(soup);
   /* A facet that is never closed ends where the next begins. */
   soup = read_text("solid x\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n" ONE, "x.stl");
@@ -102,7 +102,7 @@ static void test_damaged_text(void **state) {
   vxm_soup_destroy(soup);
   soup = read_text("solid x\nendsolid", "x.stl");
   expect_counts(soup, 0, 0);
-  expect_note(soup, "no faces");
+  expect_warning(soup, "no faces");
   vxm_soup_destroy(soup);
 }
 
@@ -156,11 +156,11 @@ static void test_binary(void **state) {
   for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
     vxm_soup *soup = read_binary(heads[i], 5, 5, 0, "x.bin");
     expect_counts(soup, 15, 5);
-    expect_no_notes(soup);
+    expect_no_warnings(soup);
     vxm_soup_destroy(soup);
     soup = read_binary(heads[i], 5, 5, 1, "x.stl");
     expect_counts(soup, 15, 5);
-    expect_note(soup, "byte 334: more after the last facet; ignored (bytes: 1)");
+    expect_warning(soup, "byte 334: more after the last facet; ignored (bytes: 1)");
     vxm_soup_destroy(soup);
   }
   vxm_soup *soup = read_binary("", 3000, 3000, 0, "x.stl"); /* more than one piece */
@@ -172,14 +172,14 @@ static void test_binary_counts(void **state) {
   (void)state;
   vxm_soup *soup = read_binary("", 7, 5, 10, "x.stl");
   expect_counts(soup, 15, 5);
-  expect_note(soup, "byte 80: 7 facets are announced, but the file holds 5");
+  expect_warning(soup, "byte 80: 7 facets are announced, but the file holds 5");
   vxm_soup_destroy(soup);
   soup = read_binary("solid", UINT32_MAX, 5, 0, "x.stl");
   expect_counts(soup, 15, 5);
   vxm_soup_destroy(soup);
   soup = read_binary("", 0, 5, 0, "x.stl");
   expect_counts(soup, 15, 5);
-  expect_note(soup, "0 facets are announced, but the file holds 5");
+  expect_warning(soup, "0 facets are announced, but the file holds 5");
   vxm_soup_destroy(soup);
   soup = read_binary("", 0, 0, 1, "x.stl");
   expect_counts(soup, 0, 0);
@@ -198,7 +198,7 @@ static void test_text_conversion(void **state) {
   for (int i = 0; i < 100; i++)
     bytes_add(&b, "\xef\xbf\xbd?", 4);
   vxm_soup *soup = read_data(b.data, b.size, "x.stl");
-  expect_note(soup, "byte 84: looks ruined by a text conversion (100 times U+FFFD)");
+  expect_warning(soup, "byte 84: looks ruined by a text conversion (100 times U+FFFD)");
   vxm_soup_destroy(soup);
   bytes_free(&b);
 }
@@ -225,7 +225,7 @@ static void test_random_files(void **state) {
     bytes_text(&b, "endsolid");
     vxm_soup *back = read_data(b.data, b.size, "x.stl");
     expect_same(soup, back);
-    expect_no_notes(back);
+    expect_no_warnings(back);
     vxm_soup_destroy(back);
     for (int k = 0; k < 10; k++) {
       vxm_error error = VXM_ERROR_INIT;

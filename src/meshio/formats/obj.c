@@ -373,16 +373,16 @@ static vxm_status finish(obj_reader *reader, vxm_error *error) {
   drop_beyond(reader);
   if (soup->face_count == 0)
     vxm_tags_drop(soup);
-  vxm_text_defect_note_line(scan, &reader->numbers, "coordinate is not a number; taken as NaN", "numbers");
-  vxm_text_defect_note_line(scan, &reader->flat, "vertex has two coordinates; z taken as 0", "vertices");
-  vxm_text_defect_note_line(scan, &reader->short_vertices, "vertex has too few coordinates; taken as NaN",
+  vxm_text_defect_warn_line(scan, &reader->numbers, "coordinate is not a number; taken as NaN", "numbers");
+  vxm_text_defect_warn_line(scan, &reader->flat, "vertex has two coordinates; z taken as 0", "vertices");
+  vxm_text_defect_warn_line(scan, &reader->short_vertices, "vertex has too few coordinates; taken as NaN",
                             "vertices");
-  vxm_text_defect_note_line(scan, &reader->zero, "face names vertex 0 (numbering starts at 1); skipped",
+  vxm_text_defect_warn_line(scan, &reader->zero, "face names vertex 0 (numbering starts at 1); skipped",
                             "faces");
-  vxm_text_defect_note_line(scan, &reader->beyond, "face names a vertex that does not exist; skipped",
+  vxm_text_defect_warn_line(scan, &reader->beyond, "face names a vertex that does not exist; skipped",
                             "faces");
-  vxm_text_defect_note_line(scan, &reader->small_faces, "face has fewer than 3 corners; skipped", "faces");
-  vxm_text_defect_note_line(scan, &reader->bad_faces, "face has a corner that is no vertex number; skipped",
+  vxm_text_defect_warn_line(scan, &reader->small_faces, "face has fewer than 3 corners; skipped", "faces");
+  vxm_text_defect_warn_line(scan, &reader->bad_faces, "face has a corner that is no vertex number; skipped",
                             "faces");
   if (soup->face_count == 0 && reader->lines_and_points > 0)
     vxm_warn(&soup->warnings, "the file has no faces, only %" PRIu64 " lines (l) or points (p)",

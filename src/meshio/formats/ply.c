@@ -47,8 +47,8 @@ typedef void note_fn(const vxm_tokenizer *scan, const vxm_text_defect *tally, co
                      const char *things);
 
 static void note_damage(const vxm_tokenizer *scan, const vxm_ply_header *header, const vxm_ply_body *body) {
-  note_fn *note = header->ascii ? vxm_text_defect_note_line : vxm_text_defect_note_byte;
-  vxm_text_defect_note_line(scan, &header->no_corners, "faces have no list vertex_indices; passed over",
+  note_fn *note = header->ascii ? vxm_text_defect_warn_line : vxm_text_defect_warn_byte;
+  vxm_text_defect_warn_line(scan, &header->no_corners, "faces have no list vertex_indices; passed over",
                             "elements");
   note(scan, &body->numbers, "coordinate is not a number; taken as NaN", "numbers");
   note(scan, &body->short_lines, "line has fewer values than the header says", "lines");
