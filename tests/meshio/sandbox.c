@@ -180,8 +180,8 @@ static int run_long(const char *word, const char *seconds, double limit_ms, bool
   assert_int_equal(vxm_module_find(module, &need, NULL), VXM_OK);
   snprintf(program, sizeof program, "%s/voxmend-reader", getenv("BUILDDIR"));
   snprintf(parent, sizeof parent, "%ld", (long)getpid());
-  const char *arguments[VXM_APART_ARGUMENTS + 1] = {
-      "voxmend-reader", module, parent, "name", "ill", "0x1p-10", "0", "100000000", "100000000", seconds};
+  const char *arguments[VXM_READER_ARGS + 1] = {"voxmend-reader", module, parent,      "name",      "ill",
+                                                "0x1p-10",        "0",    "100000000", "100000000", seconds};
   vxm_process reader;
   vxm_soup *soup;
   vxm_error error = VXM_ERROR_INIT;

@@ -152,7 +152,7 @@ static void receive_grid(const uint8_t *data, size_t size) {
   close(sender.channel);
 }
 
-void fuzz_parcel(const char *name, const uint8_t *data, size_t size) {
+void fuzz_wire(const char *name, const uint8_t *data, size_t size) {
   (void)name;
   if (size > MOST) /* more than a socket holds without a reader */
     return;
