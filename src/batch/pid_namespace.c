@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "batch/cage.h"
+#include "batch/pid_namespace.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -20,7 +20,7 @@ static void close_all_between(unsigned first, unsigned last) {
   syscall(CLOSE_RANGE, first, last, 0);
 }
 
-/* ---- Whether there are spaces ---- */
+/* ---- Whether there are namespaces ---- */
 
 static bool write_file(const char *path, const char *text) {
   int file = open(path, O_WRONLY | O_CLOEXEC);
@@ -30,8 +30,8 @@ static bool write_file(const char *path, const char *text) {
   return good;
 }
 
-/** A space of users in which we are who we were, with the right to make spaces of processes. */
-static bool take_space_of_users(void) {
+/** Enters a user namespace in which we are who we were, with the right to make PID namespaces. */
+static bool enter_user_namespace(void) {
   char users[64], groups[64];
   snprintf(users, sizeof users, "%ld %ld 1", (long)geteuid(), (long)geteuid());
   snprintf(groups, sizeof groups, "%ld %ld 1", (long)getegid(), (long)getegid());
@@ -39,8 +39,8 @@ static bool take_space_of_users(void) {
          write_file("/proc/self/uid_map", users) && write_file("/proc/self/gid_map", groups);
 }
 
-/** As fork, but the child is the first process of a new space; -1 where that cannot be. */
-static pid_t fork_space(void) {
+/** As fork, but the child is the first process of a new PID namespace; -1 where that cannot be. */
+static pid_t fork_namespace(void) {
   struct clone_args how = {.flags = CLONE_NEWPID, .exit_signal = SIGCHLD};
   return (pid_t)syscall(SYS_clone3, &how, sizeof how);
 }
@@ -53,27 +53,27 @@ static bool has_ended_well(pid_t id) {
   return id > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-static bool can_fork_space(void) {
-  pid_t id = fork_space();
+static bool can_fork_namespace(void) {
+  pid_t id = fork_namespace();
   if (id == 0)
     _exit(0);
   return has_ended_well(id);
 }
 
 /** In a child, as what cannot be finished would be left half done. */
-static bool can_take_space_of_users(void) {
+static bool can_enter_user_namespace(void) {
   pid_t id = fork();
   if (id == 0)
-    _exit(take_space_of_users() && can_fork_space() ? 0 : 1);
+    _exit(enter_user_namespace() && can_fork_namespace() ? 0 : 1);
   return has_ended_well(id);
 }
 
-batch_cage batch_cage_open(void) {
-  bool good = can_fork_space() || (can_take_space_of_users() && take_space_of_users() && can_fork_space());
-  return (batch_cage){good};
+bool batch_pid_namespaces_open(void) {
+  return can_fork_namespace() ||
+         (can_enter_user_namespace() && enter_user_namespace() && can_fork_namespace());
 }
 
-/* ---- The first process of a space ---- */
+/* ---- The first process of a namespace ---- */
 
 static void say(int end, const void *data, size_t size) {
   while (send(end, data, size, MSG_NOSIGNAL) < 0 && errno == EINTR) {
@@ -103,9 +103,9 @@ static void wait_for(pid_t worker, int end) {
 }
 
 /**
- * Returns in the process that is to work. The parent is in another space, where its number is not seen from
- * here. So it is told when its end would be ours, and has to answer, which it can no longer if it has gone
- * before.
+ * Returns in the process that is to work. The parent is in another namespace, where its number is not seen
+ * from here. So it is told when its end would be ours, and has to answer, which it can no longer if it has
+ * gone before.
  */
 static void be_first(int end) {
   char word;
@@ -128,14 +128,14 @@ static void be_first(int end) {
   _exit(1);
 }
 
-pid_t batch_cage_fork(const batch_cage *cage, int *status) {
+pid_t batch_namespace_fork(bool has_namespaces, int *status) {
   int ends[2];
   *status = -1;
-  if (!cage->has_spaces)
+  if (!has_namespaces)
     return fork();
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     return -1;
-  pid_t id = fork_space();
+  pid_t id = fork_namespace();
   if (id == 0) {
     close(ends[0]);
     be_first(ends[1]);
@@ -153,7 +153,7 @@ pid_t batch_cage_fork(const batch_cage *cage, int *status) {
   return id;
 }
 
-bool batch_cage_status(int status, int *wait_status) {
+bool batch_namespace_status(int status, int *wait_status) {
   int found;
   if (status < 0 || recv(status, &found, sizeof found, MSG_DONTWAIT) != (ssize_t)sizeof found)
     return false;
