@@ -46,7 +46,7 @@ typedef struct zygote {
   child children[CHILDREN_MAX];
   int count;
   bool has_strays; /**< processes that children left behind are being ended */
-  char request[sizeof(batch_request) + BATCH_REQUEST_MAX + 1];
+  char request[sizeof(batch_zygote_request) + BATCH_REQUEST_MAX + 1];
 } zygote;
 
 /* ---- Streams ---- */
@@ -93,7 +93,7 @@ static void read_stream(stream *s) {
 static void send_reply(const zygote *z, const batch_ending *ending, const stream *message,
                        const stream *result) {
   static const char zero[1];
-  batch_reply reply = {
+  batch_zygote_reply reply = {
       .ending = *ending, .message_bytes = message->size + 1, .result_bytes = result->size + 1};
   struct iovec parts[5] = {{&reply, sizeof reply},
                            {message->text, message->size},
@@ -182,8 +182,8 @@ static void refuse(const zygote *z, uint64_t ticket) {
   send_reply(z, &ending, &(stream){.descriptor = -1}, &(stream){.descriptor = -1});
 }
 
-_Noreturn static void be_child(zygote *z, const batch_request *head, const char *text, int input, int message,
-                               int result) {
+_Noreturn static void be_child(zygote *z, const batch_zygote_request *head, const char *text, int input,
+                               int message, int result) {
   close(z->channel);
   close(z->signals);
   for (int c = 0; c < z->count; c++) {
@@ -197,7 +197,7 @@ _Noreturn static void be_child(zygote *z, const batch_request *head, const char 
   _exit(z->work(text, result, z->payload));
 }
 
-static void start_child(zygote *z, const batch_request *head, const char *text, int input) {
+static void start_child(zygote *z, const batch_zygote_request *head, const char *text, int input) {
   child c = {.ticket = head->ticket,
              .started_ms = batch_clock_ms(),
              .status = -1,
@@ -230,7 +230,7 @@ static void start_child(zygote *z, const batch_request *head, const char *text, 
 
 /** False when the other end is closed. */
 static bool take_request(zygote *z) {
-  batch_request head;
+  batch_zygote_request head;
   batch_descriptor_room room;
   struct iovec part = {z->request, sizeof z->request - 1};
   struct msghdr message = {
