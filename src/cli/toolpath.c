@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Reads the way of a tool: a pose in each line. */
-#include "cli/carve.h"
+/** Reads the path of a tool: a pose in each line. */
+#include "cli/toolpath.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -11,18 +11,18 @@
 
 enum { LINE_SIZE = 4096, MATRIX = 12, QUATERNION = 7, PLACE = 3 };
 
-int cli_way_open(cli_run *cli, cli_way *way, const char *path) {
-  *way = (cli_way){.name = cli_shown(path, "<stdin>")};
-  way->file = strcmp(path, "-") == 0 ? stdin : fopen(path, "re");
-  if (!way->file)
+int cli_toolpath_open(cli_run *cli, cli_toolpath *toolpath, const char *path) {
+  *toolpath = (cli_toolpath){.name = cli_shown(path, "<stdin>")};
+  toolpath->file = strcmp(path, "-") == 0 ? stdin : fopen(path, "re");
+  if (!toolpath->file)
     return cli_fail_text(cli, "%s: cannot open: %s", path, strerror(errno));
   return CLI_DONE;
 }
 
-void cli_way_close(cli_way *way) {
-  if (way->file && way->file != stdin)
-    fclose(way->file);
-  way->file = NULL;
+void cli_toolpath_close(cli_toolpath *toolpath) {
+  if (toolpath->file && toolpath->file != stdin)
+    fclose(toolpath->file);
+  toolpath->file = NULL;
 }
 
 static bool is_blank(char c) {
@@ -95,48 +95,51 @@ static bool is_heading_line(const char *text) {
 }
 
 /** Reads a line that is not empty; a first one of words is a heading. */
-static int read_pose(cli_run *cli, cli_way *way, const char *text, double pose[12], bool *is_heading) {
+static int read_pose(cli_run *cli, cli_toolpath *toolpath, const char *text, double pose[12],
+                     bool *is_heading) {
   double numbers[MATRIX];
-  *is_heading = way->columns == 0 && !way->has_heading && is_heading_line(text);
-  way->has_heading |= *is_heading;
+  *is_heading = toolpath->columns == 0 && !toolpath->has_heading && is_heading_line(text);
+  toolpath->has_heading |= *is_heading;
   int columns = columns_of(text);
   if (columns != MATRIX && columns != QUATERNION && columns != PLACE)
     return cli_fail_text(cli,
                          "%s:%" PRId64 ": %d columns: x,y,z are expected, x,y,z,qw,qx,qy,qz or the 12 "
                          "numbers of a matrix",
-                         way->name, way->line, columns);
+                         toolpath->name, toolpath->line, columns);
   if (*is_heading)
     return CLI_DONE;
-  if (way->columns != 0 && way->columns != columns)
-    return cli_fail_text(cli, "%s:%" PRId64 ": %d columns, and %d before", way->name, way->line, columns,
-                         way->columns);
+  if (toolpath->columns != 0 && toolpath->columns != columns)
+    return cli_fail_text(cli, "%s:%" PRId64 ": %d columns, and %d before", toolpath->name, toolpath->line,
+                         columns, toolpath->columns);
   if (!cli_read_numbers(numbers, columns, text))
-    return cli_fail_text(cli, "%s:%" PRId64 ": not %d numbers with commas between them", way->name, way->line,
-                         columns);
+    return cli_fail_text(cli, "%s:%" PRId64 ": not %d numbers with commas between them", toolpath->name,
+                         toolpath->line, columns);
   if (!make_pose(pose, numbers, columns))
-    return cli_fail_text(cli, "%s:%" PRId64 ": the quaternion is no rotation", way->name, way->line);
-  way->columns = columns;
+    return cli_fail_text(cli, "%s:%" PRId64 ": the quaternion is no rotation", toolpath->name,
+                         toolpath->line);
+  toolpath->columns = columns;
   return CLI_DONE;
 }
 
-int cli_way_next(cli_run *cli, cli_way *way, double pose[12], bool *is_lifted, bool *is_end) {
+int cli_toolpath_next(cli_run *cli, cli_toolpath *toolpath, double pose[12], bool *is_lifted, bool *is_end) {
   char text[LINE_SIZE];
   *is_lifted = *is_end = false;
-  while (fgets(text, sizeof text, way->file)) {
-    way->line++;
-    if (!strchr(text, '\n') && !feof(way->file))
-      return cli_fail_text(cli, "%s:%" PRId64 ": longer than %d bytes", way->name, way->line, LINE_SIZE - 2);
+  while (fgets(text, sizeof text, toolpath->file)) {
+    toolpath->line++;
+    if (!strchr(text, '\n') && !feof(toolpath->file))
+      return cli_fail_text(cli, "%s:%" PRId64 ": longer than %d bytes", toolpath->name, toolpath->line,
+                           LINE_SIZE - 2);
     squeeze(text);
     *is_lifted |= !*text;
     if (!*text || *text == '#')
       continue;
     bool is_heading;
-    int status = read_pose(cli, way, text, pose, &is_heading);
+    int status = read_pose(cli, toolpath, text, pose, &is_heading);
     if (status != CLI_DONE || !is_heading)
       return status;
   }
-  if (ferror(way->file))
-    return cli_fail_text(cli, "%s: cannot read: %s", way->name, strerror(errno));
+  if (ferror(toolpath->file))
+    return cli_fail_text(cli, "%s: cannot read: %s", toolpath->name, strerror(errno));
   *is_end = true;
   return CLI_DONE;
 }
