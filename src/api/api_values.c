@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about fields in files: they check arguments and call down. */
 #include "base/sized.h"
-#include "grid/cut.h"
-#include "gridio/common/values_cut.h"
+#include "grid/crop.h"
+#include "gridio/common/values_crop.h"
 #include "gridio/gridio.h"
 #include "gridio/page/page.h"
 #include "gridio/picture/picture.h"
@@ -94,7 +94,7 @@ vxm_status vxm_field_window(vxm_field **out, const vxm_field *field, const int64
   if (!out || !field || !begin || !end)
     return fail_null(error);
   vxm_status status = vxm_space_check_box(&field->space, begin, end, error);
-  return status == VXM_OK ? vxm_field_cut(out, field, begin, end, error) : status;
+  return status == VXM_OK ? vxm_field_crop(out, field, begin, end, error) : status;
 }
 
 /* ---- What it holds ---- */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/endian.h"
-#include "grid/cut.h"
-#include "gridio/common/values_cut.h"
+#include "grid/crop.h"
+#include "gridio/common/values_crop.h"
 #include "gridio/formats/octree_values.h"
 
 #include <inttypes.h>

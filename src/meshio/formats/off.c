@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** OFF as text: by lines where the file keeps to lines, by tokens where it does not. */
 #include "meshio/formats/off.h"
-#include "meshio/common/cut.h"
 #include "meshio/common/format.h"
+#include "meshio/common/truncation.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -316,7 +316,7 @@ static vxm_status read_faces(vxm_tokenizer *scan, uint64_t faces, uint64_t *done
     if (status == VXM_OK)
       status = vxm_tokenizer_progress(scan, error);
     if (outcome == FACE_READ && *done + 1 == faces && ends_in_index(scan, first, n) &&
-        vxm_last_index_may_be_cut(soup, 0))
+        vxm_last_index_may_be_truncated(soup, 0))
       vxm_text_defect_add(&damage->cut, first);
   }
   scan->end = end;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** PLY: header, body and what they came to. */
 #include "meshio/formats/ply.h"
-#include "meshio/common/cut.h"
 #include "meshio/common/format.h"
+#include "meshio/common/truncation.h"
 
 #include <inttypes.h>
 
@@ -107,7 +107,7 @@ static vxm_status finish(vxm_tokenizer *scan, const vxm_ply_header *header, vxm_
   if (!header->ascii && (body->cut || body->beyond.count > 0))
     vxm_warn_text_conversion(scan);
   if (body->last && vxm_last_token(scan) < scan->end &&
-      (body->faces_first || vxm_last_index_may_be_cut(soup, 0)))
+      (body->faces_first || vxm_last_index_may_be_truncated(soup, 0)))
     vxm_warn(&soup->warnings,
              "line %" PRId64 ": the file ends without a line end; its last number may be cut off",
              vxm_tokenizer_line(scan, body->last));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** STL as text: words in any case, any number of solids, facets of any size. */
-#include "meshio/common/cut.h"
 #include "meshio/common/tags.h"
+#include "meshio/common/truncation.h"
 #include "meshio/formats/stl.h"
 
 #include <inttypes.h>

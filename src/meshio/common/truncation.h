@@ -3,8 +3,8 @@
  * Texts that end in the middle: a number that touches the end of the file may be half a number. Where a count
  * tells that more should follow it is not believed; where nothing tells, these look for signs.
  */
-#ifndef VXM_MESHIO_COMMON_CUT_H
-#define VXM_MESHIO_COMMON_CUT_H
+#ifndef VXM_MESHIO_COMMON_TRUNCATION_H
+#define VXM_MESHIO_COMMON_TRUNCATION_H
 
 #include "meshio/common/tokenizer.h"
 
@@ -17,7 +17,7 @@ const unsigned char *vxm_last_token(const vxm_tokenizer *scan);
  *
  * @param first_number what the file calls the first vertex: 0 or 1
  */
-bool vxm_last_index_may_be_cut(const vxm_soup *soup, uint64_t first_number);
+bool vxm_last_index_may_be_truncated(const vxm_soup *soup, uint64_t first_number);
 
 /** Whether the last face may lack corners: the one before has more, and no other has the edge that closes it.
  */

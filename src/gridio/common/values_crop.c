@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "gridio/common/values_cut.h"
-#include "grid/cut.h"
+#include "gridio/common/values_crop.h"
+#include "grid/crop.h"
 
 #include <string.h>
 
@@ -35,8 +35,8 @@ vxm_status vxm_field_add_table(vxm_field *out, const vxm_label_table *table, vxm
   return status;
 }
 
-vxm_status vxm_field_cut(vxm_field **out, const vxm_field *field, const int64_t begin[3],
-                         const int64_t end[3], vxm_error *error) {
+vxm_status vxm_field_crop(vxm_field **out, const vxm_field *field, const int64_t begin[3],
+                          const int64_t end[3], vxm_error *error) {
   const vxm_about *about = &field->about;
   vxm_space space = vxm_space_of_box(&field->space, begin, end);
   vxm_field *made;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "grid/cut.h"
+#include "grid/crop.h"
 #include "base/bits.h"
 
 #include <inttypes.h>
@@ -36,8 +36,8 @@ static void cut_row(uint64_t *out, const uint64_t *row, size_t row_words, int64_
     out[words - 1] &= vxm_low_bits(rest);
 }
 
-vxm_status vxm_grid_cut(vxm_grid **out, const vxm_grid *grid, const int64_t begin[3], const int64_t end[3],
-                        vxm_error *error) {
+vxm_status vxm_grid_crop(vxm_grid **out, const vxm_grid *grid, const int64_t begin[3], const int64_t end[3],
+                         vxm_error *error) {
   vxm_space space = vxm_space_of_box(&grid->space, begin, end);
   vxm_status status = vxm_grid_create(out, grid->context, &space, error);
   if (status != VXM_OK)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "grid/octree_cut.h"
-#include "grid/cut.h"
+#include "grid/octree_crop.h"
+#include "grid/crop.h"
 
-typedef struct cut {
+typedef struct crop {
   const int64_t *begin, *end;
   vxm_grid *grid;
-} cut;
+} crop;
 
 /** Sets the voxels of a cube that the box has. */
-static void put_cube(const cut *c, const int64_t at[3], int64_t side) {
+static void put_cube(const crop *c, const int64_t at[3], int64_t side) {
   int64_t low[3], high[3];
   for (int a = 0; a < 3; a++) {
     low[a] = vxm_max(at[a], c->begin[a]) - c->begin[a];
@@ -32,7 +32,7 @@ static void put_four(uint64_t *row, int64_t x, int64_t length, uint64_t bits) {
     row[x / 64 + 1] |= bits >> (64 - shift);
 }
 
-static void put_brick(const cut *c, const int64_t at[3], uint64_t bits) {
+static void put_brick(const crop *c, const int64_t at[3], uint64_t bits) {
   for (int64_t k = vxm_max(at[2], c->begin[2]); k < vxm_min(at[2] + 4, c->end[2]); k++)
     for (int64_t j = vxm_max(at[1], c->begin[1]); j < vxm_min(at[1] + 4, c->end[1]); j++) {
       uint64_t four = bits >> (16 * (k - at[2]) + 4 * (j - at[1])) & 15;
@@ -43,20 +43,20 @@ static void put_brick(const cut *c, const int64_t at[3], uint64_t bits) {
 }
 
 static void put_piece(const vxm_sparse_piece *piece, void *payload) {
-  const cut *c = payload;
+  const crop *c = payload;
   if (piece->bits == ~UINT64_C(0))
     put_cube(c, piece->position, piece->side);
   else
     put_brick(c, piece->position, piece->bits);
 }
 
-vxm_status vxm_octree_cut(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
-                          const int64_t end[3], vxm_error *error) {
+vxm_status vxm_octree_crop(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
+                           const int64_t end[3], vxm_error *error) {
   vxm_space space = vxm_space_of_box(&sparse->space, begin, end);
   vxm_status status = vxm_grid_create(out, sparse->context, &space, error);
   if (status != VXM_OK)
     return status;
-  cut c = {begin, end, *out};
+  crop c = {begin, end, *out};
   vxm_octree_walk(sparse, begin, end, put_piece, &c);
   return VXM_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/common/cut.h"
+#include "meshio/common/truncation.h"
 
 const unsigned char *vxm_last_token(const vxm_tokenizer *scan) {
   const unsigned char *at = scan->end;
@@ -21,7 +21,7 @@ static bool is_shared(const vxm_soup *soup, uint32_t a, uint32_t b) {
   return false;
 }
 
-bool vxm_last_index_may_be_cut(const vxm_soup *soup, uint64_t first_number) {
+bool vxm_last_index_may_be_truncated(const vxm_soup *soup, uint64_t first_number) {
   if (soup->face_count == 0)
     return false;
   size_t n;
