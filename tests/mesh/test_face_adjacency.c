@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "soups.h"
 
-#include "mesh/across.h"
 #include "mesh/edges.h"
+#include "mesh/face_adjacency.h"
 
 /* ---- The definition, tried on all pairs of sides ---- */
 
@@ -36,7 +36,7 @@ static bool pair_all(const side *sides, size_t corners, uint32_t *wanted) {
   bool paired = true;
   for (size_t c = 0; c < corners; c++) {
     size_t same = 0, opposite = 0;
-    wanted[c] = VXM_ACROSS_NONE;
+    wanted[c] = VXM_NO_ADJACENT;
     for (size_t d = 0; d < corners && sides[c].from != sides[c].to; d++) {
       same += sides[d].from == sides[c].from && sides[d].to == sides[c].to;
       if (sides[d].from == sides[c].to && sides[d].to == sides[c].from) {
@@ -58,7 +58,7 @@ static bool check(const vxm_soup *soup) {
   bool paired = pair_all(sides, soup->corner_count, wanted);
   assert_int_equal(vxm_edges_build_pairs(&edges, soup->context, soup, NULL), VXM_OK);
   assert_int_equal(vxm_edges_build_sides(&listed, soup->context, soup, NULL, NULL), VXM_OK);
-  assert_int_equal(edges.across != NULL, paired);
+  assert_int_equal(edges.adjacent != NULL, paired);
   assert_int_equal(edges.count, listed.count);
   assert_int_equal(edges.odd, listed.odd);
   assert_int_equal(edges.open, listed.open);
@@ -68,7 +68,7 @@ static bool check(const vxm_soup *soup) {
     assert_int_equal(2 * edges.count, count);
     assert_null(edges.edges);
     assert_null(edges.sides);
-    assert_memory_equal(edges.across, wanted, soup->corner_count * sizeof *wanted);
+    assert_memory_equal(edges.adjacent, wanted, soup->corner_count * sizeof *wanted);
   } else {
     assert_memory_equal(edges.edges, listed.edges, edges.count * sizeof *edges.edges);
     assert_memory_equal(edges.sides, listed.sides, soup->corner_count * sizeof *edges.sides);

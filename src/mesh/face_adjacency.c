@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "mesh/across.h"
+#include "mesh/face_adjacency.h"
 
 #include "base/threads.h"
 #include "mesh/sort.h"
@@ -15,7 +15,7 @@ enum {
 typedef struct pairing {
   vxm_side_table *table;
   const uint32_t *face_of; /**< per corner, NULL if it is a third of it */
-  uint32_t *across;
+  uint32_t *adjacent;
   uint64_t *scratch; /**< per worker, as many as the largest group has */
   atomic_bool failed;
 } pairing;
@@ -26,8 +26,8 @@ static inline uint32_t face_at(const pairing *p, uint32_t corner) {
 
 static inline void put_pair(const pairing *p, uint64_t side, uint64_t other) {
   uint32_t corner = vxm_side_corner(side), opposite = vxm_side_corner(other);
-  p->across[corner] = face_at(p, opposite);
-  p->across[opposite] = face_at(p, corner);
+  p->adjacent[corner] = face_at(p, opposite);
+  p->adjacent[opposite] = face_at(p, corner);
 }
 
 /** Finds for each upward side, among those downward that are left, the one that has the same end; without a
@@ -100,19 +100,20 @@ static vxm_status list_faces(uint32_t **face_of, const vxm_side_table *table, co
 static vxm_status pair(pairing *p, const vxm_soup *soup, vxm_error *error) {
   vxm_context *context = p->table->context;
   size_t workers = (size_t)vxm_context_threads(context);
-  p->across = vxm_alloc(context, soup->corner_count, sizeof *p->across, error);
-  if (p->across)
+  p->adjacent = vxm_alloc(context, soup->corner_count, sizeof *p->adjacent, error);
+  if (p->adjacent)
     p->scratch = vxm_alloc(context, p->table->largest > FEW ? workers * p->table->largest : 0,
                            sizeof *p->scratch, error);
   if (!p->scratch)
     return error->code;
   if (p->table->count < soup->corner_count)
-    memset(p->across, 0xff, soup->corner_count * sizeof *p->across); /* VXM_ACROSS_NONE */
+    memset(p->adjacent, 0xff, soup->corner_count * sizeof *p->adjacent); /* VXM_NO_ADJACENT */
   return vxm_parallel_asked(context, p->table->vertex_count / VERTICES_PER_SLICE + 1, pair_slice, p, error);
 }
 
-vxm_status vxm_across_pair(uint32_t **across, vxm_side_table *table, const vxm_soup *soup, vxm_error *error) {
-  *across = NULL;
+vxm_status vxm_face_adjacency_build(uint32_t **adjacent, vxm_side_table *table, const vxm_soup *soup,
+                                    vxm_error *error) {
+  *adjacent = NULL;
   if (!table->is_balanced)
     return VXM_OK;
   pairing p = {.table = table};
@@ -125,9 +126,9 @@ vxm_status vxm_across_pair(uint32_t **across, vxm_side_table *table, const vxm_s
   vxm_free(table->context, p.scratch);
   vxm_free(table->context, face_of);
   if (status == VXM_OK && !atomic_load(&p.failed))
-    *across = p.across;
+    *adjacent = p.adjacent;
   else
-    vxm_free(table->context, p.across);
+    vxm_free(table->context, p.adjacent);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
   return status;
