@@ -3,7 +3,7 @@
 
 #include "mesh/weld.h"
 #include "meshio/meshio.h"
-#include "repair/state/merge_places.h"
+#include "repair/state/merge_rule.h"
 #include "repair/state/self_intersections.h"
 #include "repair/state/vertex_fans.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "repair/state/faces_taken.h"
+#include "repair/state/face_subset.h"
 
 #include <string.h>
 
@@ -13,8 +13,8 @@ static bool take_tags(vxm_soup *taken, const uint64_t *numbers, const vxm_soup *
   return taken->face_tags != NULL;
 }
 
-vxm_status vxm_faces_taken(vxm_soup **out, uint64_t **numbers, const vxm_soup *soup, const uint8_t *marks,
-                           uint8_t mark, vxm_error *error) {
+vxm_status vxm_face_subset_create(vxm_soup **out, uint64_t **numbers, const vxm_soup *soup,
+                                  const uint8_t *marks, uint8_t mark, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   *numbers = vxm_alloc(soup->context, soup->face_count, sizeof **numbers, &local);
   *out = NULL;

@@ -3,8 +3,8 @@
  * Which vertices other programs take for one when they read a file. Some round positions to 1e-8 in model
  * units by default and merge what is then the same, whatever the size of the model; many hold 32-bit floats.
  */
-#ifndef VXM_REPAIR_STATE_MERGE_PLACES_H
-#define VXM_REPAIR_STATE_MERGE_PLACES_H
+#ifndef VXM_REPAIR_STATE_MERGE_RULE_H
+#define VXM_REPAIR_STATE_MERGE_RULE_H
 
 #include "base/exact_math.h"
 #include "mesh/unit_scale.h"
@@ -30,7 +30,7 @@ static inline double vxm_single(double x) {
   return (double)single;
 }
 
-static inline double vxm_merge_place(double x, vxm_merge_rule rule) {
+static inline double vxm_merge_coordinate(double x, vxm_merge_rule rule) {
   if (rule == VXM_MERGE_ROUNDED)
     return nearbyint(x * (1 / VXM_MERGE_GRID)) + 0.0;
   if (rule == VXM_MERGE_FLOAT)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Some faces of a soup, as a soup. */
-#ifndef VXM_REPAIR_STATE_FACES_TAKEN_H
-#define VXM_REPAIR_STATE_FACES_TAKEN_H
+#ifndef VXM_REPAIR_STATE_FACE_SUBSET_H
+#define VXM_REPAIR_STATE_FACE_SUBSET_H
 
 #include "mesh/soup.h"
 
@@ -12,7 +12,7 @@
  * @param marks        per face
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_faces_taken(vxm_soup **out, uint64_t **numbers, const vxm_soup *soup, const uint8_t *marks,
-                           uint8_t mark, vxm_error *error);
+vxm_status vxm_face_subset_create(vxm_soup **out, uint64_t **numbers, const vxm_soup *soup,
+                                  const uint8_t *marks, uint8_t mark, vxm_error *error);
 
 #endif
