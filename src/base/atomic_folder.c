@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "base/new_folder.h"
+#include "base/atomic_folder.h"
 #include "base/system_calls.h"
 
 #include <dirent.h>
@@ -11,7 +11,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-enum { ATTEMPTS = 1000, DEPTH_MAX = 8, TEMPORARY_MAX = VXM_NEW_FOLDER_TEMPORARY };
+enum { ATTEMPTS = 1000, DEPTH_MAX = 8, TEMPORARY_MAX = VXM_ATOMIC_FOLDER_TEMPORARY };
 
 static const int folder_flags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
 
@@ -94,13 +94,13 @@ static void remove_parts(int descriptor, vxm_folder_part_fn is_part, int depth) 
 
 /** Removes an opened folder and the parts in it, if the name is still its own: meanwhile another program may
  * have taken the name. The mark goes first: who reads the folder sees by it that files begin to lack. */
-static void remove_folder(const vxm_new_folder *folder, const char *name, int descriptor) {
-  if (!is_named(descriptor, folder->spot.folder, name))
+static void remove_folder(const vxm_atomic_folder *folder, const char *name, int descriptor) {
+  if (!is_named(descriptor, folder->destination.folder, name))
     return;
   unlinkat(descriptor, folder->mark, 0);
   remove_parts(descriptor, folder->is_part, 0);
-  if (is_named(descriptor, folder->spot.folder, name))
-    unlinkat(folder->spot.folder, name, AT_REMOVEDIR);
+  if (is_named(descriptor, folder->destination.folder, name))
+    unlinkat(folder->destination.folder, name, AT_REMOVEDIR);
 }
 
 /* ---- Opening ---- */
@@ -124,7 +124,7 @@ static bool split(char lead[PATH_MAX], char name[NAME_MAX + 1], const char *path
   return true;
 }
 
-static void name_temporary(vxm_new_folder *folder, const char *name, int attempt) {
+static void name_temporary(vxm_atomic_folder *folder, const char *name, int attempt) {
   uint32_t hash = 2166136261U; /* FNV-1a: the same for every process that writes this folder */
   for (const char *c = name; *c; c++)
     hash = (hash ^ (unsigned char)*c) * 16777619U;
@@ -133,7 +133,7 @@ static void name_temporary(vxm_new_folder *folder, const char *name, int attempt
 
 /** Where it is to be: links on the way are followed as those to files are, by a name that is not there yet.
  */
-static bool find_spot(vxm_new_folder *folder, const char *path) {
+static bool find_spot(vxm_atomic_folder *folder, const char *path) {
   char lead[PATH_MAX], name[NAME_MAX + 1], probe[PATH_MAX];
   if (!split(lead, name, path))
     return false;
@@ -141,9 +141,9 @@ static bool find_spot(vxm_new_folder *folder, const char *path) {
   int length = snprintf(probe, sizeof probe, "%s%s", lead, folder->temporary);
   folder->temporary[0] = '\0';
   errno = ENAMETOOLONG;
-  if (length >= (int)sizeof probe || !vxm_output_path_find(&folder->spot, probe))
+  if (length >= (int)sizeof probe || !vxm_output_path_find(&folder->destination, probe))
     return false;
-  memcpy(folder->spot.name, name, sizeof name);
+  memcpy(folder->destination.name, name, sizeof name);
   return true;
 }
 
@@ -155,24 +155,24 @@ static bool lock(int descriptor) {
 }
 
 /** Removes what a killed program left under such a name: whoever still needs it holds its lock. */
-static void remove_abandoned(const vxm_new_folder *folder, const char *name) {
+static void remove_abandoned(const vxm_atomic_folder *folder, const char *name) {
   struct stat info;
-  int descriptor = openat(folder->spot.folder, name, folder_flags);
+  int descriptor = openat(folder->destination.folder, name, folder_flags);
   if (descriptor >= 0 && fstat(descriptor, &info) == 0 && info.st_uid == geteuid() && lock(descriptor))
     remove_folder(folder, name, descriptor);
   if (descriptor >= 0)
     close(descriptor);
 }
 
-static void name_moved(char out[TEMPORARY_MAX], const vxm_new_folder *folder) {
+static void name_moved(char out[TEMPORARY_MAX], const vxm_atomic_folder *folder) {
   memcpy(out, folder->temporary, TEMPORARY_MAX);
   memcpy(strrchr(out, '.'), ".old", sizeof ".old"); /* for ".tmp" */
 }
 
 /** Opens and locks the folder that was just made. False if another program took it for an abandoned one, with
  * errno 0, or with the reason. */
-static bool take(vxm_new_folder *folder) {
-  const int parent = folder->spot.folder;
+static bool take(vxm_atomic_folder *folder) {
+  const int parent = folder->destination.folder;
   int descriptor = openat(parent, folder->temporary, folder_flags);
   if (descriptor < 0) {
     int reason = errno == ENOENT ? 0 : errno;
@@ -190,15 +190,15 @@ static bool take(vxm_new_folder *folder) {
   return false;
 }
 
-static bool make(vxm_new_folder *folder) {
-  const int parent = folder->spot.folder;
+static bool make(vxm_atomic_folder *folder) {
+  const int parent = folder->destination.folder;
   struct stat old;
-  const bool has_old = fstatat(parent, folder->spot.name, &old, AT_SYMLINK_NOFOLLOW) == 0;
+  const bool has_old = fstatat(parent, folder->destination.name, &old, AT_SYMLINK_NOFOLLOW) == 0;
   /* What others may not read is not shown to them until it is complete either. */
   const mode_t mode = has_old && old.st_uid == geteuid() ? (old.st_mode & 0777) | S_IRWXU : 0777;
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
     char moved[TEMPORARY_MAX];
-    name_temporary(folder, folder->spot.name, attempt);
+    name_temporary(folder, folder->destination.name, attempt);
     remove_abandoned(folder, folder->temporary);
     name_moved(moved, folder);
     if (has_old) /* else it may be all that is left of it */
@@ -217,10 +217,10 @@ static bool make(vxm_new_folder *folder) {
 }
 
 /** Refuses to replace anything but what such a folder is. */
-static vxm_status check_old(const vxm_new_folder *folder, const char *path, vxm_error *error) {
+static vxm_status check_old(const vxm_atomic_folder *folder, const char *path, vxm_error *error) {
   const vxm_place place = {path, 0, -1, -1};
-  const int parent = folder->spot.folder;
-  const char *name = folder->spot.name, *what = folder->what;
+  const int parent = folder->destination.folder;
+  const char *name = folder->destination.name, *what = folder->what;
   char other[NAME_MAX + 1], inner[PATH_MAX];
   struct stat info;
   if (fstatat(parent, name, &info, AT_SYMLINK_NOFOLLOW) != 0)
@@ -243,25 +243,25 @@ static vxm_status check_old(const vxm_new_folder *folder, const char *path, vxm_
   return VXM_OK;
 }
 
-vxm_status vxm_new_folder_open(vxm_new_folder *out, const char *path, const char *mark,
-                               vxm_folder_part_fn is_part, const char *what, vxm_error *error) {
-  *out = (vxm_new_folder){.spot = {.folder = -1, .device = -1},
-                          .descriptor = -1,
-                          .old = -1,
-                          .mark = mark,
-                          .what = what,
-                          .is_part = is_part};
+vxm_status vxm_atomic_folder_open(vxm_atomic_folder *out, const char *path, const char *mark,
+                                  vxm_folder_part_fn is_part, const char *what, vxm_error *error) {
+  *out = (vxm_atomic_folder){.destination = {.folder = -1, .device = -1},
+                             .descriptor = -1,
+                             .old = -1,
+                             .mark = mark,
+                             .what = what,
+                             .is_part = is_part};
   if (!find_spot(out, path))
     return vxm_fail_errno(
         error, path,
-        out->spot.is_strangers
+        out->destination.is_strangers
             ? "cannot write through another user's link in a folder that everybody may write to"
             : "cannot write");
   vxm_status status = check_old(out, path, error);
   if (status == VXM_OK && !make(out))
     status = vxm_fail_errno(error, path, "cannot write");
   if (status != VXM_OK)
-    vxm_new_folder_close(out);
+    vxm_atomic_folder_close(out);
   return status;
 }
 
@@ -280,7 +280,7 @@ static bool write_all(int descriptor, const char *data, size_t size) {
   return true;
 }
 
-bool vxm_new_folder_put(const vxm_new_folder *folder, const char *name, const void *data, size_t size) {
+bool vxm_atomic_folder_put(const vxm_atomic_folder *folder, const char *name, const void *data, size_t size) {
   int descriptor =
       openat(folder->descriptor, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (descriptor < 0)
@@ -296,44 +296,44 @@ bool vxm_new_folder_put(const vxm_new_folder *folder, const char *name, const vo
 /* ---- Completing ---- */
 
 /** Moves the old one away where names cannot be exchanged. */
-static bool move_old(vxm_new_folder *folder) {
-  const int parent = folder->spot.folder;
+static bool move_old(vxm_atomic_folder *folder) {
+  const int parent = folder->destination.folder;
   char old[TEMPORARY_MAX];
   name_moved(old, folder);
-  if (renameat(parent, folder->spot.name, parent, old) != 0)
+  if (renameat(parent, folder->destination.name, parent, old) != 0)
     return false;
-  if (renameat(parent, folder->temporary, parent, folder->spot.name) == 0) {
+  if (renameat(parent, folder->temporary, parent, folder->destination.name) == 0) {
     memcpy(folder->temporary, old, sizeof old);
     return true;
   }
   int reason = errno;
-  renameat(parent, old, parent, folder->spot.name);
+  renameat(parent, old, parent, folder->destination.name);
   errno = reason;
   return false;
 }
 
 /** Puts it in the place of the old one, which stays open and locked: under a temporary name nobody is to take
  * it for an abandoned one. */
-static bool replace(vxm_new_folder *folder) {
-  const int parent = folder->spot.folder;
+static bool replace(vxm_atomic_folder *folder) {
+  const int parent = folder->destination.folder;
   struct stat info;
   (void)!lock(folder->old); /* another program that has just published it may hold it still */
   if (fstat(folder->old, &info) == 0 && info.st_uid == geteuid())
     (void)!fchmod(folder->descriptor, info.st_mode & 0777);
-  return renameat2(parent, folder->temporary, parent, folder->spot.name, RENAME_EXCHANGE) == 0 ||
+  return renameat2(parent, folder->temporary, parent, folder->destination.name, RENAME_EXCHANGE) == 0 ||
          move_old(folder);
 }
 
-vxm_status vxm_new_folder_publish(vxm_new_folder *folder, const char *path, vxm_error *error) {
-  const int parent = folder->spot.folder;
+vxm_status vxm_atomic_folder_publish(vxm_atomic_folder *folder, const char *path, vxm_error *error) {
+  const int parent = folder->destination.folder;
   vxm_status status = check_old(folder, path, error); /* since it was opened much may have come there */
   if (status != VXM_OK)
     return status;
-  folder->old = openat(parent, folder->spot.name, folder_flags);
+  folder->old = openat(parent, folder->destination.name, folder_flags);
   if (folder->old >= 0)
     folder->is_published = folder->has_replaced = replace(folder);
   else if (errno == ENOENT)
-    folder->is_published = renameat(parent, folder->temporary, parent, folder->spot.name) == 0;
+    folder->is_published = renameat(parent, folder->temporary, parent, folder->destination.name) == 0;
   if (!folder->is_published)
     return vxm_fail_errno(error, path, "cannot write");
   if (!folder->has_replaced)
@@ -341,30 +341,30 @@ vxm_status vxm_new_folder_publish(vxm_new_folder *folder, const char *path, vxm_
   return VXM_OK;
 }
 
-void vxm_new_folder_revert(vxm_new_folder *folder) {
-  const int parent = folder->spot.folder;
-  if (!folder->is_published || !is_named(folder->descriptor, parent, folder->spot.name))
+void vxm_atomic_folder_revert(vxm_atomic_folder *folder) {
+  const int parent = folder->destination.folder;
+  if (!folder->is_published || !is_named(folder->descriptor, parent, folder->destination.name))
     return; /* another program has replaced it already */
   folder->is_published = false;
   if (!folder->has_replaced) {
-    remove_folder(folder, folder->spot.name, folder->descriptor);
+    remove_folder(folder, folder->destination.name, folder->descriptor);
     return;
   }
-  if (renameat2(parent, folder->temporary, parent, folder->spot.name, RENAME_EXCHANGE) == 0)
+  if (renameat2(parent, folder->temporary, parent, folder->destination.name, RENAME_EXCHANGE) == 0)
     return; /* the new one has the temporary name, and goes with it */
-  remove_folder(folder, folder->spot.name, folder->descriptor);
-  if (renameat(parent, folder->temporary, parent, folder->spot.name) == 0)
+  remove_folder(folder, folder->destination.name, folder->descriptor);
+  if (renameat(parent, folder->temporary, parent, folder->destination.name) == 0)
     folder->temporary[0] = '\0';
 }
 
-void vxm_new_folder_close(vxm_new_folder *folder) {
+void vxm_atomic_folder_close(vxm_atomic_folder *folder) {
   if (folder->temporary[0])
     remove_folder(folder, folder->temporary, folder->is_published ? folder->old : folder->descriptor);
   if (folder->descriptor >= 0)
     close(folder->descriptor);
   if (folder->old >= 0)
     close(folder->old);
-  vxm_output_path_close(&folder->spot);
+  vxm_output_path_close(&folder->destination);
   folder->descriptor = folder->old = -1;
   folder->temporary[0] = '\0';
 }

@@ -6,8 +6,8 @@
  *
  * Steps: open, put files, publish, close. What fails leaves errno.
  */
-#ifndef VXM_BASE_NEW_FOLDER_H
-#define VXM_BASE_NEW_FOLDER_H
+#ifndef VXM_BASE_ATOMIC_FOLDER_H
+#define VXM_BASE_ATOMIC_FOLDER_H
 
 #include "base/context.h"
 #include "base/output_path.h"
@@ -19,18 +19,18 @@
  * @param depth     0 for what lies in the folder itself */
 typedef bool (*vxm_folder_part_fn)(const char *name, bool is_folder, int depth);
 
-enum { VXM_NEW_FOLDER_TEMPORARY = 48 };
+enum { VXM_ATOMIC_FOLDER_TEMPORARY = 48 };
 
-typedef struct vxm_new_folder {
-  vxm_output_path spot; /**< `name` may be that of a folder */
-  int descriptor;       /**< of the new one, locked */
-  int old;              /**< of what it replaced, locked; -1 = none */
+typedef struct vxm_atomic_folder {
+  vxm_output_path destination; /**< `name` may be that of a folder */
+  int descriptor;              /**< of the new one, locked */
+  int old;                     /**< of what it replaced, locked; -1 = none */
   /** Its present name; of a published one that of what it replaced; "" = none. */
-  char temporary[VXM_NEW_FOLDER_TEMPORARY];
+  char temporary[VXM_ATOMIC_FOLDER_TEMPORARY];
   bool is_published, has_replaced;
   const char *mark, *what; /**< as given */
   vxm_folder_part_fn is_part;
-} vxm_new_folder;
+} vxm_atomic_folder;
 
 /**
  * Makes the folder. One that is there is replaced if it has an entry `mark` and nothing that is not a part;
@@ -41,20 +41,20 @@ typedef struct vxm_new_folder {
  * @param what the name of such a folder in messages, such as "a Zarr array"
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_ARGUMENT if something else is there
  */
-vxm_status vxm_new_folder_open(vxm_new_folder *out, const char *path, const char *mark,
-                               vxm_folder_part_fn is_part, const char *what, vxm_error *error);
+vxm_status vxm_atomic_folder_open(vxm_atomic_folder *out, const char *path, const char *mark,
+                                  vxm_folder_part_fn is_part, const char *what, vxm_error *error);
 /** Adds a file of these bytes; false with errno set. Thread-safe. */
-bool vxm_new_folder_put(const vxm_new_folder *folder, const char *name, const void *data, size_t size);
+bool vxm_atomic_folder_put(const vxm_atomic_folder *folder, const char *name, const void *data, size_t size);
 /**
  * Gives it its name; what it replaces stays until the end.
  *
  * @param path for messages
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_ARGUMENT if something has come there that is not replaced
  */
-vxm_status vxm_new_folder_publish(vxm_new_folder *folder, const char *path, vxm_error *error);
+vxm_status vxm_atomic_folder_publish(vxm_atomic_folder *folder, const char *path, vxm_error *error);
 /** Takes a published folder away again; what it had replaced is back. */
-void vxm_new_folder_revert(vxm_new_folder *folder);
+void vxm_atomic_folder_revert(vxm_atomic_folder *folder);
 /** Closes it. What was not published is gone, and what was replaced. */
-void vxm_new_folder_close(vxm_new_folder *folder);
+void vxm_atomic_folder_close(vxm_atomic_folder *folder);
 
 #endif
