@@ -40,7 +40,7 @@ int64_t vxm_sparse_count(const vxm_sparse *sparse) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (sparse)
-    vxm_octree_sum(sparse, &count, &hash);
+    vxm_octree_count_hash(sparse, &count, &hash);
   return count;
 }
 
@@ -48,7 +48,7 @@ uint64_t vxm_sparse_hash(const vxm_sparse *sparse) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (sparse)
-    vxm_octree_sum(sparse, &count, &hash);
+    vxm_octree_count_hash(sparse, &count, &hash);
   return hash;
 }
 

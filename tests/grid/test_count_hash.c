@@ -3,14 +3,14 @@
 #include "../gridio/grids.h"
 
 #include "base/hash.h"
-#include "grid/sum.h"
+#include "grid/count_hash.h"
 
 static const vxm_layout layouts[6] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
 
 /** The definition in doc/conventions.md, one voxel at a time. */
-static vxm_sum plain_sum(const vxm_grid *grid) {
+static vxm_count_hash plain_sum(const vxm_grid *grid) {
   const int64_t *n = grid->space.dims;
-  vxm_sum sum = {0, 0};
+  vxm_count_hash sum = {0, 0};
   for (int a = 0; a < 3; a++)
     sum.hash = vxm_hash_word(sum.hash, (uint64_t)n[a]);
   for (int64_t k = 0; k < n[2]; k++)
@@ -43,14 +43,15 @@ static vxm_window cut(const vxm_grid *grid, vxm_layout layout, int64_t begin, in
   return window;
 }
 
-static void assert_same(vxm_sum a, vxm_sum b) {
+static void assert_same(vxm_count_hash a, vxm_count_hash b) {
   assert_true(a.count == b.count);
   assert_true(a.hash == b.hash);
 }
 
 /** One window after the other, each with the last slice of the one before; by threads, or cut once more. */
-static vxm_sum sum_in_windows(const vxm_grid *grid, vxm_layout layout, vxm_context *context, vxm_rng *rng) {
-  vxm_sum sum = vxm_sum_start(&grid->space);
+static vxm_count_hash sum_in_windows(const vxm_grid *grid, vxm_layout layout, vxm_context *context,
+                                     vxm_rng *rng) {
+  vxm_count_hash sum = vxm_count_hash_start(&grid->space);
   int64_t slices = grid->space.dims[layout.slow];
   vxm_window before = {.words = NULL};
   for (int64_t begin = 0, end; begin < slices; begin = end) {
@@ -58,13 +59,13 @@ static vxm_sum sum_in_windows(const vxm_grid *grid, vxm_layout layout, vxm_conte
     vxm_window window = cut(grid, layout, begin, end);
     const uint64_t *last = begin > 0 ? vxm_window_row(&before, 0, begin - 1) : NULL;
     if (vxm_rng_below(rng, 2) == 0)
-      vxm_sum_add(&sum, context, &window, last);
+      vxm_count_hash_add(&sum, context, &window, last);
     else {
       int64_t middle = begin + (int64_t)vxm_rng_below(rng, (uint64_t)(end - begin + 1));
-      vxm_sum part = {0, 0};
-      vxm_sum_slices(&part, &window, middle, end, last); /* in any order */
-      vxm_sum_slices(&sum, &window, begin, middle, last);
-      vxm_sum_join(&sum, part);
+      vxm_count_hash part = {0, 0};
+      vxm_count_hash_slices(&part, &window, middle, end, last); /* in any order */
+      vxm_count_hash_slices(&sum, &window, begin, middle, last);
+      vxm_count_hash_join(&sum, part);
     }
     free(before.words);
     before = window;
@@ -88,7 +89,7 @@ static void test_layouts_and_windows(void **state) {
       side[vxm_rng_below(&rng, 3)] = 3;
     vxm_grid *grid = new_grid(contexts[round % 3], unit_space(side[0], side[1], side[2]));
     fill_random(grid, &rng, round % KINDS);
-    vxm_sum expected = plain_sum(grid), whole;
+    vxm_count_hash expected = plain_sum(grid), whole;
     vxm_grid_sum(grid, &whole.count, &whole.hash);
     assert_same(whole, expected);
     for (int l = 0; l < 6; l++)
@@ -110,8 +111,8 @@ static void test_large(void **state) {
     fill_random(grid, &rng, 2);
     for (int l = 0; l < 6; l++) {
       vxm_window window = cut(grid, layouts[l], 0, grid->space.dims[layouts[l].slow]);
-      vxm_sum sum = vxm_sum_start(&grid->space);
-      vxm_sum_add(&sum, context, &window, NULL);
+      vxm_count_hash sum = vxm_count_hash_start(&grid->space);
+      vxm_count_hash_add(&sum, context, &window, NULL);
       assert_same(sum, plain_sum(grid));
       free(window.words);
     }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Count and hash of an octree. The hash follows the steps along x (grid/sum.h): each node is taken together
- * with the one before it along x, down to where both are uniform.
+ * Count and hash of an octree. The hash follows the steps along x (grid/count_hash.h): each node is taken
+ * together with the one before it along x, down to where both are uniform.
  */
 #include "base/hash.h"
 #include "base/threads.h"
+#include "grid/count_hash.h"
 #include "grid/octree.h"
-#include "grid/sum.h"
 
 #include <string.h>
 
@@ -21,7 +21,7 @@ typedef struct cell {
 typedef struct sums {
   const vxm_sparse *sparse;
   int64_t begin, end; /**< along z */
-  vxm_sum sum;
+  vxm_count_hash sum;
   uint64_t ahead[64]; /**< numbers of a brick's voxels, from its first one on */
 } sums;
 
@@ -131,7 +131,7 @@ static void sum_node(sums *s, int level, cell left, cell node, const int64_t at[
 typedef struct sum_job {
   const vxm_sparse *sparse;
   size_t tasks;
-  vxm_sum parts[STEPS];
+  vxm_count_hash parts[STEPS];
 } sum_job;
 
 static void sum_share(size_t task, int worker, void *payload) {
@@ -155,14 +155,14 @@ static void sum_share(size_t task, int worker, void *payload) {
   job->parts[task] = s.sum;
 }
 
-void vxm_octree_sum(const vxm_sparse *sparse, int64_t *count, uint64_t *hash) {
+void vxm_octree_count_hash(const vxm_sparse *sparse, int64_t *count, uint64_t *hash) {
   sum_job job = {.sparse = sparse};
   size_t shares = ((size_t)sparse->space.dims[2] + SHARE - 1) / SHARE;
   job.tasks = shares < STEPS ? shares : STEPS;
   vxm_parallel(sparse->context, job.tasks, sum_share, &job);
-  vxm_sum sum = vxm_sum_start(&sparse->space);
+  vxm_count_hash sum = vxm_count_hash_start(&sparse->space);
   for (size_t t = 0; t < job.tasks; t++)
-    vxm_sum_join(&sum, job.parts[t]);
+    vxm_count_hash_join(&sum, job.parts[t]);
   *count = sum.count;
   *hash = sum.hash;
 }

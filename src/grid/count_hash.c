@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "grid/sum.h"
+#include "grid/count_hash.h"
 #include "base/hash.h"
 #include "base/threads.h"
 
@@ -28,7 +28,7 @@ typedef struct line {
 } line;
 
 /** Adds the steps of word `w` of its row. */
-static inline void add_steps(vxm_sum *sum, uint64_t steps, uint64_t word, size_t w, line at) {
+static inline void add_steps(vxm_count_hash *sum, uint64_t steps, uint64_t word, size_t w, line at) {
   for (; steps; steps &= steps - 1) {
     unsigned b = (unsigned)__builtin_ctzll(steps);
     size_t bit = w * 64 + b;
@@ -39,7 +39,7 @@ static inline void add_steps(vxm_sum *sum, uint64_t steps, uint64_t word, size_t
 }
 
 /** A row along x; `tail` has the valid bits of its last word. */
-static inline void sum_along(vxm_sum *sum, const uint64_t *row, size_t words, uint64_t tail, line at) {
+static inline void sum_along(vxm_count_hash *sum, const uint64_t *row, size_t words, uint64_t tail, line at) {
   uint64_t last = 0; /* the bit before, in all places */
   for (size_t w = 0; w < words;) {
     size_t end = w + VXM_LINE_WORDS <= words ? w + VXM_LINE_WORDS : words;
@@ -59,8 +59,8 @@ static inline void sum_along(vxm_sum *sum, const uint64_t *row, size_t words, ui
 }
 
 /** A row across x, against the one at i - 1; NULL stands for clear voxels. */
-static inline void sum_across(vxm_sum *sum, const uint64_t *row, const uint64_t *previous, size_t words,
-                              line at) {
+static inline void sum_across(vxm_count_hash *sum, const uint64_t *row, const uint64_t *previous,
+                              size_t words, line at) {
   static const uint64_t clear[VXM_LINE_WORDS] = {0};
   for (size_t w = 0; w < words; w += VXM_LINE_WORDS) {
     const uint64_t *from = previous ? previous + w : clear;
@@ -73,11 +73,11 @@ static inline void sum_across(vxm_sum *sum, const uint64_t *row, const uint64_t 
 }
 
 /** Rows begin..end-1; row n is row n % middle_dim of slice n / middle_dim of the window. */
-static vxm_sum sum_rows(const rows *r, size_t begin, size_t end) {
+static vxm_count_hash sum_rows(const rows *r, size_t begin, size_t end) {
   const vxm_window *window = r->window;
   const vxm_layout layout = window->layout;
   uint64_t tail = vxm_window_tail_mask(window);
-  vxm_sum sum = {0, 0};
+  vxm_count_hash sum = {0, 0};
   int64_t middle = (int64_t)(begin % (size_t)window->middle_dim);
   int64_t slow = window->begin + (int64_t)(begin / (size_t)window->middle_dim);
   for (size_t n = begin; n < end; n++) {
@@ -107,18 +107,18 @@ static vxm_sum sum_rows(const rows *r, size_t begin, size_t end) {
   return sum;
 }
 
-vxm_sum vxm_sum_start(const vxm_space *space) {
-  vxm_sum sum = {0, 0};
+vxm_count_hash vxm_count_hash_start(const vxm_space *space) {
+  vxm_count_hash sum = {0, 0};
   for (int a = 0; a < 3; a++)
     sum.hash = vxm_hash_word(sum.hash, (uint64_t)space->dims[a]);
   return sum;
 }
 
-void vxm_sum_slices(vxm_sum *sum, const vxm_window *window, int64_t first, int64_t end,
-                    const uint64_t *before) {
+void vxm_count_hash_slices(vxm_count_hash *sum, const vxm_window *window, int64_t first, int64_t end,
+                           const uint64_t *before) {
   rows r = rows_of(window, before);
   size_t middle = (size_t)window->middle_dim;
-  vxm_sum_join(
+  vxm_count_hash_join(
       sum, sum_rows(&r, (size_t)(first - window->begin) * middle, (size_t)(end - window->begin) * middle));
 }
 
@@ -127,7 +127,7 @@ enum { TASKS = 256, TASK_WORDS = 1 << 13 };
 typedef struct sum_job {
   rows r;
   size_t row_count, tasks;
-  vxm_sum parts[TASKS];
+  vxm_count_hash parts[TASKS];
 } sum_job;
 
 static void sum_task(size_t task, int worker, void *payload) {
@@ -137,7 +137,8 @@ static void sum_task(size_t task, int worker, void *payload) {
                               vxm_slice_begin(job->row_count, job->tasks, task + 1));
 }
 
-void vxm_sum_add(vxm_sum *sum, vxm_context *context, const vxm_window *window, const uint64_t *before) {
+void vxm_count_hash_add(vxm_count_hash *sum, vxm_context *context, const vxm_window *window,
+                        const uint64_t *before) {
   sum_job job = {.r = rows_of(window, before)};
   job.row_count = (size_t)(window->end - window->begin) * (size_t)window->middle_dim;
   /* At least so many words each that a task is worth its start. */
@@ -145,5 +146,5 @@ void vxm_sum_add(vxm_sum *sum, vxm_context *context, const vxm_window *window, c
   job.tasks = worth < TASKS ? worth : TASKS;
   vxm_parallel(context, job.tasks, sum_task, &job);
   for (size_t t = 0; t < job.tasks; t++)
-    vxm_sum_join(sum, job.parts[t]);
+    vxm_count_hash_join(sum, job.parts[t]);
 }

@@ -8,35 +8,36 @@
  * step. Sums have no order: any windows in any layout give the same, and the work follows the surface where
  * whole words are alike.
  */
-#ifndef VXM_GRID_SUM_H
-#define VXM_GRID_SUM_H
+#ifndef VXM_GRID_COUNT_HASH_H
+#define VXM_GRID_COUNT_HASH_H
 
 #include "grid/window.h"
 
 /** Sums of some slices; those of all slices of a space, added up, are those of the grid. */
-typedef struct vxm_sum {
+typedef struct vxm_count_hash {
   int64_t count; /**< set voxels, once all slices are in: where slices run along x a part is not of its own */
   uint64_t hash;
-} vxm_sum;
+} vxm_count_hash;
 
 /** Sum of no slices of this space: count 0, and the hash of the dimensions. */
-vxm_sum vxm_sum_start(const vxm_space *space);
+vxm_count_hash vxm_count_hash_start(const vxm_space *space);
 
 /**
  * Adds slices first..end-1, numbers of the whole space, of a window; on the calling thread alone.
  *
- * @param sum    one that vxm_sum_start made, or zeros for a part to be added to such a one
+ * @param sum    one that vxm_count_hash_start made, or zeros for a part to be added to such a one
  * @param before the words of slice first - 1, needed where slices run along x and it is not in the window;
  *               otherwise, and for slice 0, it is not looked at
  */
-void vxm_sum_slices(vxm_sum *sum, const vxm_window *window, int64_t first, int64_t end,
-                    const uint64_t *before);
+void vxm_count_hash_slices(vxm_count_hash *sum, const vxm_window *window, int64_t first, int64_t end,
+                           const uint64_t *before);
 
 /** Adds all slices of a window on the threads of a context; the same in any number of them. */
-void vxm_sum_add(vxm_sum *sum, vxm_context *context, const vxm_window *window, const uint64_t *before);
+void vxm_count_hash_add(vxm_count_hash *sum, vxm_context *context, const vxm_window *window,
+                        const uint64_t *before);
 
 /** Adds a part that began as zeros. */
-static inline void vxm_sum_join(vxm_sum *sum, vxm_sum part) {
+static inline void vxm_count_hash_join(vxm_count_hash *sum, vxm_count_hash part) {
   sum->count += part.count;
   sum->hash += part.hash;
 }
