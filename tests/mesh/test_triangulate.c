@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Polygons into triangles: exact, whatever touches what; and fast. */
-#include "mesh/triangulate.h"
 #include "../base/rounds.h"
 #include "mesh/orient2d.h"
+#include "mesh/triangulate.h"
 #include "polygons.h"
 
 #include "base/bits.h"
