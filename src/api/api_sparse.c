@@ -4,7 +4,7 @@
 #include "grid/crop.h"
 #include "grid/octree_crop.h"
 #include "gridio/formats/coords.h"
-#include "gridio/formats/octree_values.h"
+#include "gridio/formats/octree/octree_values.h"
 #include "gridio/gridio.h"
 #include "gridio/sparse_coverage.h"
 #include "gridio/sparse_write.h"

@@ -3,7 +3,7 @@
 #include "base/threads.h"
 #include "grid/crop.h"
 #include "grid/octree_count.h"
-#include "gridio/formats/octree_file.h"
+#include "gridio/formats/octree/octree_file.h"
 
 #include <pthread.h>
 

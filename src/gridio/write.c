@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/bit_transpose.h"
 #include "gridio/common/values_writer.h"
-#include "gridio/formats/blocks.h"
+#include "gridio/formats/minecraft/blocks.h"
 #include "gridio/gridio.h"
 #include "gridio/mesh/surface_mesh.h"
 #include "meshio/meshio.h"

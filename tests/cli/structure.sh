@@ -19,7 +19,8 @@ order="voxmend base mesh sandbox
   voxel/lattice voxel/parts voxel/parity voxel/winding voxel/surface voxel/closest voxel/engine voxel/thin voxel/solid voxel/model
   voxel/sparse voxel/fields voxel/labels
   gpu/common gpu/opencl gpu/opengl gpu
-  gridio/common gridio/formats gridio/mesh gridio/picture gridio/page gridio
+  gridio/common gridio/formats/octree gridio/formats/minecraft gridio/formats/vdb gridio/formats/vox gridio/formats
+  gridio/mesh gridio/picture gridio/page gridio
   export remesh augment carve experimental api
   modules/assimp modules/images modules/occt modules/openmesh modules/cgal modules/openvdb modules/hdf5 modules/octomap"
 

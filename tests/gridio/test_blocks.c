@@ -6,7 +6,7 @@
 #include "base/endian.h"
 #include "config.h"
 #include "gridio/common/format.h"
-#include "gridio/formats/block_colors.h"
+#include "gridio/formats/minecraft/block_colors.h"
 
 #include <math.h>
 
