@@ -13,13 +13,13 @@
 enum { SHARE_LEAST = 4 << 20, LARGE_BLOCK = 4 << 20, LARGE_PAGE = 2 << 20, LINE = 64 };
 
 typedef struct bench_worker {
-  bench_team *team;
+  bench_fill *fill;
   pthread_t thread;
   sem_t start;
   size_t begin, end; /**< its share */
 } bench_worker;
 
-struct bench_team {
+struct bench_fill {
   unsigned char *block;
   int value; /**< to fill with; another one each time, as processors may skip stores that change nothing */
   bool quit;
@@ -34,42 +34,42 @@ static void wait_for(sem_t *semaphore) {
 }
 
 static void fill_share(const bench_worker *worker) {
-  const bench_team *team = worker->team;
-  memset(team->block + worker->begin, team->value, worker->end - worker->begin);
+  const bench_fill *fill = worker->fill;
+  memset(fill->block + worker->begin, fill->value, worker->end - worker->begin);
 }
 
 static void *work(void *payload) {
   bench_worker *worker = payload;
   for (;;) {
     wait_for(&worker->start);
-    if (worker->team->quit)
+    if (worker->fill->quit)
       return NULL;
     fill_share(worker);
-    sem_post(&worker->team->done);
+    sem_post(&worker->fill->done);
   }
 }
 
-void bench_team_fill(bench_team *team) {
-  team->value = (team->value + 1) & 0xff;
-  for (int i = 1; i < team->count; i++)
-    sem_post(&team->workers[i].start);
-  fill_share(&team->workers[0]);
-  for (int i = 1; i < team->count; i++)
-    wait_for(&team->done);
+void bench_fill_run(bench_fill *fill) {
+  fill->value = (fill->value + 1) & 0xff;
+  for (int i = 1; i < fill->count; i++)
+    sem_post(&fill->workers[i].start);
+  fill_share(&fill->workers[0]);
+  for (int i = 1; i < fill->count; i++)
+    wait_for(&fill->done);
 }
 
-void bench_team_destroy(bench_team *team) {
-  if (!team)
+void bench_fill_destroy(bench_fill *fill) {
+  if (!fill)
     return;
-  team->quit = true;
-  for (int i = 1; i < team->count; i++) {
-    sem_post(&team->workers[i].start);
-    pthread_join(team->workers[i].thread, NULL);
-    sem_destroy(&team->workers[i].start);
+  fill->quit = true;
+  for (int i = 1; i < fill->count; i++) {
+    sem_post(&fill->workers[i].start);
+    pthread_join(fill->workers[i].thread, NULL);
+    sem_destroy(&fill->workers[i].start);
   }
-  sem_destroy(&team->done);
-  free(team->block);
-  free(team);
+  sem_destroy(&fill->done);
+  free(fill->block);
+  free(fill);
 }
 
 static vxm_status fail(cli_run *cli, vxm_status code, uint64_t bytes, const char *why) {
@@ -92,41 +92,41 @@ static unsigned char *make_block(size_t bytes) {
 }
 
 /** Starts the threads beside the caller, as many as the system lets it have, and deals out the shares. */
-static void start_workers(bench_team *team, size_t bytes, int wanted) {
-  for (team->count = 1; team->count < wanted; team->count++) {
-    bench_worker *worker = &team->workers[team->count];
-    worker->team = team;
+static void start_workers(bench_fill *fill, size_t bytes, int wanted) {
+  for (fill->count = 1; fill->count < wanted; fill->count++) {
+    bench_worker *worker = &fill->workers[fill->count];
+    worker->fill = fill;
     sem_init(&worker->start, 0, 0);
     if (pthread_create(&worker->thread, NULL, work, worker) == 0)
       continue;
     sem_destroy(&worker->start);
     break;
   }
-  size_t count = (size_t)team->count, share = (bytes / count + LINE - 1) / LINE * LINE, begin = 0;
+  size_t count = (size_t)fill->count, share = (bytes / count + LINE - 1) / LINE * LINE, begin = 0;
   for (size_t i = 0; i < count; i++, begin += share) {
-    team->workers[i].begin = begin < bytes ? begin : bytes;
-    team->workers[i].end = i + 1 < count && begin + share < bytes ? begin + share : bytes;
+    fill->workers[i].begin = begin < bytes ? begin : bytes;
+    fill->workers[i].end = i + 1 < count && begin + share < bytes ? begin + share : bytes;
   }
 }
 
-vxm_status bench_team_create(bench_team **out, cli_run *cli, uint64_t bytes, int threads) {
+vxm_status bench_fill_create(bench_fill **out, cli_run *cli, uint64_t bytes, int threads) {
   *out = NULL;
   if (cli->limits.memory_limit > 0 && bytes > cli->limits.memory_limit)
     return fail(cli, VXM_ERROR_MEMORY_LIMIT, bytes,
                 "beyond the memory limit; raise it (--memlimit) or lower the resolution (-r)");
   uint64_t shares = bytes / SHARE_LEAST;
   int wanted = shares < (uint64_t)threads ? (int)(shares > 0 ? shares : 1) : threads;
-  bench_team *team = calloc(1, sizeof *team + (size_t)wanted * sizeof team->workers[0]);
-  if (!team)
+  bench_fill *fill = calloc(1, sizeof *fill + (size_t)wanted * sizeof fill->workers[0]);
+  if (!fill)
     return fail(cli, VXM_ERROR_MEMORY, bytes, "out of memory; lower the resolution or free some memory");
-  team->block = make_block(bytes);
-  if (!team->block) {
-    free(team);
+  fill->block = make_block(bytes);
+  if (!fill->block) {
+    free(fill);
     return fail(cli, VXM_ERROR_MEMORY, bytes, "out of memory; lower the resolution or free some memory");
   }
-  sem_init(&team->done, 0, 0);
-  team->workers[0].team = team;
-  start_workers(team, bytes, wanted);
-  *out = team;
+  sem_init(&fill->done, 0, 0);
+  fill->workers[0].fill = fill;
+  start_workers(fill, bytes, wanted);
+  *out = fill;
   return VXM_OK;
 }

@@ -2,14 +2,14 @@
 /* Several devices at once have the bits and the report of one: solids, votes, surfaces, variants; the faster
  * one gets more to do; what a device fails to do goes to the others, until none is left; limits and
  * cancelling end all of it. OpenCL's first device is there twice, in two halves or by PoCL's own setting. */
-#include "gpu/team.h" /* before the test's own `engine` */
+#include "gpu/multi_device.h" /* before the test's own `engine` */
 
 #include "gpu_test.h"
 
 #include <time.h>
 
-static vxm_team *team(void) {
-  vxm_team *made = vxm_team_of(engine);
+static vxm_multi_device *group(void) {
+  vxm_multi_device *made = vxm_multi_device_of(engine);
   assert_non_null(made);
   return made;
 }
@@ -24,12 +24,12 @@ static struct watched {
   vxm_status with;
   int delay_ms;
   bool votes_alone; /**< count as calls */
-} watched[VXM_TEAM_MOST];
+} watched[VXM_MULTI_DEVICE_MOST];
 
 static vxm_status begin_call(const vxm_engine *by, int64_t slices, bool is_vote, struct watched **out,
                              vxm_error *error) {
   int m = 0;
-  while (team()->members[m].engine != by)
+  while (group()->members[m].engine != by)
     m++;
   struct watched *w = *out = &watched[m];
   nanosleep(&(struct timespec){.tv_nsec = w->delay_ms * 1000000L}, NULL);
@@ -65,13 +65,13 @@ static vxm_status watch_surface(vxm_engine *by, const vxm_surface *surface, cons
   return status == VXM_OK ? w->own->surface(by, surface, window, kind, is_fresh, error) : status;
 }
 
-/** A new team; nothing fails yet. Each call takes a little, so that all of them get some. */
-static void make_team(vxm_context *owner) {
+/** A new group; nothing fails yet. Each call takes a little, so that all of them get some. */
+static void make_group(vxm_context *owner) {
   vxm_error error = VXM_ERROR_INIT;
   if (vxm_engine_create(&engine, owner, ENGINE, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
-  for (int m = 0; m < team()->count; m++) {
-    vxm_engine *member = team()->members[m].engine;
+  for (int m = 0; m < group()->count; m++) {
+    vxm_engine *member = group()->members[m].engine;
     watched[m] = (struct watched){.ops = *member->ops, .own = member->ops, .delay_ms = 3};
     watched[m].ops.unite = watch_unite;
     watched[m].ops.vote = watch_vote;
@@ -112,7 +112,7 @@ static vxm_voxelize_options options_of(int kind) {
   return how;
 }
 
-/** By the team, and by the CPU. */
+/** By the group, and by the CPU. */
 static void check_same(int kind) {
   vxm_space space = engine_space(61, 62, 33);
   vxm_soup *sieve = make_sieve();
@@ -135,11 +135,11 @@ static void check_same(int kind) {
 
 static void test_the_same(void **state) {
   (void)state;
-  make_team(NULL);
-  assert_int_equal(vxm_engine_describe(engine)->devices, team()->count);
+  make_group(NULL);
+  assert_int_equal(vxm_engine_describe(engine)->devices, group()->count);
   for (int kind = 0; kind < KINDS; kind++)
     check_same(kind);
-  for (int m = 0; m < team()->count; m++)
+  for (int m = 0; m < group()->count; m++)
     assert_true(watched[m].calls > 0);
   assert_int_equal(vxm_engine_describe(engine)->lost_devices, 0);
   drop_team();
@@ -148,14 +148,14 @@ static void test_the_same(void **state) {
 /** Eight slices are at least as many as each of the pieces has. */
 static void test_by_speed(void **state) {
   (void)state;
-  make_team(NULL);
+  make_group(NULL);
   watched[0].delay_ms = 60;
   check_same(3); /* to know the speeds */
-  for (int m = 0; m < team()->count; m++)
+  for (int m = 0; m < group()->count; m++)
     watched[m].slices = 0;
   check_same(3);
   int64_t others = 0;
-  for (int m = 1; m < team()->count; m++)
+  for (int m = 1; m < group()->count; m++)
     others += watched[m].slices;
   assert_int_equal(others + watched[0].slices, 33);
   assert_true(watched[0].slices * 2 < others);
@@ -172,7 +172,7 @@ static void test_one_fails(void **state) {
       if (votes && kind != 2)
         continue;
       at += votes;
-      make_team(NULL);
+      make_group(NULL);
       watched[1].votes_alone = votes;
       watched[1].fails_at = at;
       watched[1].delay_ms = 0;
@@ -182,7 +182,7 @@ static void test_one_fails(void **state) {
       const vxm_engine_info *info = vxm_engine_describe(engine);
       assert_true(is_lost || at > 1);
       assert_int_equal(info->lost_devices, is_lost);
-      assert_int_equal(info->devices, team()->count - is_lost);
+      assert_int_equal(info->devices, group()->count - is_lost);
       assert_int_equal(strstr(info->note, "made to fail") != NULL, is_lost);
       if (is_lost)
         assert_int_equal(watched[1].calls, at); /* and it is asked no more */
@@ -213,8 +213,8 @@ static vxm_status voxelize(vxm_context *owner) {
 
 static void test_all_fail(void **state) {
   (void)state;
-  make_team(NULL);
-  for (int m = 0; m < team()->count; m++) {
+  make_group(NULL);
+  for (int m = 0; m < group()->count; m++) {
     watched[m].fails_at = 1;
     watched[m].with = VXM_ERROR_UNAVAILABLE;
   }
@@ -227,13 +227,13 @@ static void test_all_fail(void **state) {
 /** Work that is more than any can hold is refused, and less of it is done afterwards. */
 static void test_too_large(void **state) {
   (void)state;
-  make_team(NULL);
-  for (int m = 0; m < team()->count; m++) {
+  make_group(NULL);
+  for (int m = 0; m < group()->count; m++) {
     watched[m].fails_at = 1;
     watched[m].with = VXM_ERROR_RANGE;
   }
   assert_int_equal(voxelize(context), VXM_ERROR_RANGE);
-  assert_int_equal(vxm_engine_describe(engine)->devices, team()->count);
+  assert_int_equal(vxm_engine_describe(engine)->devices, group()->count);
   assert_int_equal(vxm_engine_describe(engine)->lost_devices, 0);
   assert_int_equal(voxelize(context), VXM_OK);
   drop_team();
@@ -250,7 +250,7 @@ static void test_limits(void **state) {
   (void)state;
   vxm_context *owner = context_of(1, 0);
   size_t used = memory_used(owner);
-  make_team(owner);
+  make_group(owner);
   watched[1].fails_at = 1;
   watched[1].with = VXM_ERROR_MEMORY_LIMIT;
   watched[0].delay_ms = 30;
@@ -307,11 +307,11 @@ static void test_variants(void **state) {
     out[by] = malloc((size_t)2 * COUNT * BYTES);
     assert_non_null(out[by]);
     if (by)
-      make_team(NULL);
+      make_group(NULL);
     make_variants(out[by], BYTES, by ? engine : NULL, COUNT);
   }
   assert_memory_equal(out[0], out[1], COUNT * BYTES);
-  for (int m = 0; m < team()->count; m++)
+  for (int m = 0; m < group()->count; m++)
     assert_true(watched[m].calls > 0);
   watched[1].fails_at = watched[1].calls + 3;
   watched[1].with = VXM_ERROR_UNAVAILABLE;
@@ -325,7 +325,7 @@ static void test_variants(void **state) {
 /** A format that needs a module that is not there costs no device. */
 static void test_unwritable_files(void **state) {
   (void)state;
-  make_team(NULL);
+  make_group(NULL);
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_grid_write_options as = VXM_GRID_WRITE_OPTIONS_INIT;
@@ -345,7 +345,7 @@ static void test_unwritable_files(void **state) {
   assert_int_equal(vxm_sampler_put(sampler, 0, box, NULL), VXM_OK);
   assert_int_not_equal(vxm_sampler_files(paths, sampler, variants, 4, &as, NULL, &error), VXM_OK);
   assert_null(strstr(error.text, "device"));
-  assert_int_equal(vxm_engine_describe(engine)->devices, team()->count);
+  assert_int_equal(vxm_engine_describe(engine)->devices, group()->count);
   assert_int_equal(voxelize(context), VXM_OK);
   if (before)
     setenv("VOXMEND_MODULES", before, 1);
@@ -388,7 +388,7 @@ int main(void) {
   int status = gpu_test_start(NULL);
   if (status != 0)
     return status;
-  bool are_several = vxm_team_of(engine) != NULL;
+  bool are_several = vxm_multi_device_of(engine) != NULL;
   drop_team();
   if (!are_several) {
     fprintf(stderr, "skipped: " ENGINE " is one device\n");

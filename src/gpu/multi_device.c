@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "gpu/team.h"
+#include "gpu/multi_device.h"
 #include "base/clock.h"
 #include "base/threads.h"
 
@@ -17,41 +17,41 @@ typedef struct span {
 } span;
 
 /** A run of all members; the mutex is of all but what does not change. */
-typedef struct team_run {
-  vxm_team *team;
-  const vxm_team_work *work;
+typedef struct shared_run {
+  vxm_multi_device *group;
+  const vxm_multi_device_work *work;
   pthread_mutex_t mutex;
   pthread_cond_t change;
-  span left[VXM_TEAM_MOST + 1]; /**< what nobody has begun, and what members failed to do */
+  span left[VXM_MULTI_DEVICE_MOST + 1]; /**< what nobody has begun, and what members failed to do */
   int left_count;
-  bool has_begun[VXM_TEAM_MOST];
+  bool has_begun[VXM_MULTI_DEVICE_MOST];
   int64_t done;
   int busy;         /**< threads that have not ended */
   atomic_bool stop; /**< what is under way is not needed any more */
   vxm_status status;
   vxm_error error;
-} team_run;
+} shared_run;
 
 typedef struct seat {
-  team_run *run;
+  shared_run *run;
   int who;
 } seat;
 
-static double rates_of(const vxm_team *team) {
+static double rates_of(const vxm_multi_device *group) {
   double sum = 0;
-  for (int m = 0; m < team->count; m++)
-    if (!team->members[m].is_lost && team->members[m].rate <= 0)
+  for (int m = 0; m < group->count; m++)
+    if (!group->members[m].is_lost && group->members[m].rate <= 0)
       return 0;
-  for (int m = 0; m < team->count; m++)
-    if (!team->members[m].is_lost)
-      sum += team->members[m].rate;
+  for (int m = 0; m < group->count; m++)
+    if (!group->members[m].is_lost)
+      sum += group->members[m].rate;
   return sum;
 }
 
-static int count_members(const vxm_team *team) {
+static int count_members(const vxm_multi_device *group) {
   int count = 0;
-  for (int m = 0; m < team->count; m++)
-    count += !team->members[m].is_lost;
+  for (int m = 0; m < group->count; m++)
+    count += !group->members[m].is_lost;
   return count;
 }
 
@@ -60,13 +60,13 @@ static int count_members(const vxm_team *team) {
  * known, else a half of that; then a half of its part of the rest, so that in the end all are done at about
  * the same time. False if nothing is left.
  */
-static bool take(team_run *run, int who, span *out) {
-  const vxm_team *team = run->team;
+static bool take(shared_run *run, int who, span *out) {
+  const vxm_multi_device *group = run->group;
   if (run->left_count == 0 || atomic_load(&run->stop))
     return false;
   span *from = &run->left[run->left_count - 1];
-  double rates = rates_of(team),
-         part = rates > 0 ? team->members[who].rate / rates : 1.0 / count_members(team);
+  double rates = rates_of(group),
+         part = rates > 0 ? group->members[who].rate / rates : 1.0 / count_members(group);
   double left = (double)(from->end - from->begin), all = (double)(run->work->end - run->work->begin);
   int64_t pieces =
       (int64_t)ceil(run->has_begun[who] ? 0.5 * part * left : (rates > 0 ? 0.85 : 0.5) * part * all);
@@ -79,15 +79,15 @@ static bool take(team_run *run, int who, span *out) {
   return true;
 }
 
-static void note_speed(vxm_team_member *member, const span *piece, double ms) {
+static void note_speed(vxm_multi_device_member *member, const span *piece, double ms) {
   double rate = (double)(piece->end - piece->begin) / (ms > 1e-3 ? ms : 1e-3);
   member->rate = member->rate > 0 ? (member->rate + rate) / 2 : rate;
 }
 
-static void lose(vxm_team *team, int who, const vxm_error *error) {
-  vxm_engine_info *info = &team->base.info;
-  const vxm_engine *engine = team->members[who].engine;
-  team->members[who].is_lost = true;
+static void lose(vxm_multi_device *group, int who, const vxm_error *error) {
+  vxm_engine_info *info = &group->base.info;
+  const vxm_engine *engine = group->members[who].engine;
+  group->members[who].is_lost = true;
   info->devices--;
   info->lost_devices++;
   snprintf(info->note, sizeof info->note, "%.40s failed, so the others went on: %.150s", engine->info.name,
@@ -95,11 +95,11 @@ static void lose(vxm_team *team, int who, const vxm_error *error) {
 }
 
 /** Work that was too much for some may be followed by less. */
-static void give_back_the_small(vxm_team *team) {
-  vxm_engine_info *info = &team->base.info;
-  for (int m = 0; m < team->count; m++)
-    if (team->members[m].is_too_small) {
-      team->members[m].is_lost = team->members[m].is_too_small = false;
+static void give_back_the_small(vxm_multi_device *group) {
+  vxm_engine_info *info = &group->base.info;
+  for (int m = 0; m < group->count; m++)
+    if (group->members[m].is_too_small) {
+      group->members[m].is_lost = group->members[m].is_too_small = false;
       info->devices++;
       info->lost_devices--;
     }
@@ -113,19 +113,19 @@ static bool is_of_device(vxm_status status) {
 }
 
 /** Takes note of what became of a piece. False where the member has to end. */
-static bool account(team_run *run, int who, const span *piece, double ms, vxm_status status,
+static bool account(shared_run *run, int who, const span *piece, double ms, vxm_status status,
                     const vxm_error *error) {
   if (status == VXM_OK) {
-    note_speed(&run->team->members[who], piece, ms);
+    note_speed(&run->group->members[who], piece, ms);
     run->done += piece->end - piece->begin;
     return true;
   }
   if (is_of_device(status)) {
-    lose(run->team, who, error);
-    run->team->members[who].is_too_small = status == VXM_ERROR_RANGE;
+    lose(run->group, who, error);
+    run->group->members[who].is_too_small = status == VXM_ERROR_RANGE;
     run->left[run->left_count++] = *piece;
   }
-  if (!is_of_device(status) || count_members(run->team) == 0) {
+  if (!is_of_device(status) || count_members(run->group) == 0) {
     if (run->status == VXM_OK) {
       run->status = status;
       run->error = *error;
@@ -137,8 +137,8 @@ static bool account(team_run *run, int who, const span *piece, double ms, vxm_st
 
 static void *work_along(void *argument) {
   seat *s = argument;
-  team_run *run = s->run;
-  vxm_team_member *member = &run->team->members[s->who];
+  shared_run *run = s->run;
+  vxm_multi_device_member *member = &run->group->members[s->who];
   bool goes_on = true;
   span piece;
   vxm_worker_begin(&run->stop);
@@ -161,9 +161,9 @@ static void *work_along(void *argument) {
 }
 
 /** The caller reports, and stops the others if it is told to. */
-static void watch(team_run *run) {
+static void watch(shared_run *run) {
   enum { LOOK_MS = 20 };
-  const vxm_team_work *work = run->work;
+  const vxm_multi_device_work *work = run->work;
   double all = (double)(work->end - work->begin);
   while (run->busy > 0) {
     struct timespec until;
@@ -175,7 +175,7 @@ static void watch(team_run *run) {
     pthread_cond_timedwait(&run->change, &run->mutex, &until);
     double done = (double)run->done / all;
     pthread_mutex_unlock(&run->mutex);
-    vxm_status status = vxm_progress(run->team->base.context, work->phase, done, &local);
+    vxm_status status = vxm_progress(run->group->base.context, work->phase, done, &local);
     pthread_mutex_lock(&run->mutex);
     if (status != VXM_OK && run->status == VXM_OK) {
       run->status = status;
@@ -186,13 +186,13 @@ static void watch(team_run *run) {
 }
 
 /** One thread for each member that is left, until all have ended. */
-static void run_once(team_run *run) {
-  pthread_t threads[VXM_TEAM_MOST];
-  seat seats[VXM_TEAM_MOST];
+static void run_once(shared_run *run) {
+  pthread_t threads[VXM_MULTI_DEVICE_MOST];
+  seat seats[VXM_MULTI_DEVICE_MOST];
   int started = 0;
   pthread_mutex_lock(&run->mutex);
-  for (int m = 0; m < run->team->count; m++) {
-    if (run->team->members[m].is_lost)
+  for (int m = 0; m < run->group->count; m++) {
+    if (run->group->members[m].is_lost)
       continue;
     seats[started] = (seat){run, m};
     if (pthread_create(&threads[started], NULL, work_along, &seats[started]) != 0)
@@ -210,16 +210,17 @@ static void run_once(team_run *run) {
     pthread_join(threads[t], NULL);
 }
 
-vxm_status vxm_team_run(vxm_team *team, const vxm_team_work *work, vxm_error *error) {
-  team_run run = {.team = team,
-                  .work = work,
-                  .left = {{work->begin, work->end}},
-                  .left_count = 1,
-                  .error = VXM_ERROR_INIT};
+vxm_status vxm_multi_device_run(vxm_multi_device *group, const vxm_multi_device_work *work,
+                                vxm_error *error) {
+  shared_run run = {.group = group,
+                    .work = work,
+                    .left = {{work->begin, work->end}},
+                    .left_count = 1,
+                    .error = VXM_ERROR_INIT};
   if (work->begin >= work->end)
     return VXM_OK;
-  if (count_members(team) == 0)
-    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "no device is left: %.200s", team->base.info.note);
+  if (count_members(group) == 0)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "no device is left: %.200s", group->base.info.note);
   pthread_mutex_init(&run.mutex, NULL);
   pthread_cond_init(&run.change, NULL);
   /* What a member fails to do may come back when the others have ended. */
@@ -227,7 +228,7 @@ vxm_status vxm_team_run(vxm_team *team, const vxm_team_work *work, vxm_error *er
     run_once(&run);
   pthread_cond_destroy(&run.change);
   pthread_mutex_destroy(&run.mutex);
-  give_back_the_small(team);
+  give_back_the_small(group);
   if (run.status != VXM_OK)
     vxm_error_pass(error, &run.error);
   return run.status;
@@ -246,14 +247,14 @@ static vxm_window part_of(const vxm_window *window, int64_t begin, int64_t end) 
   return part;
 }
 
-static vxm_team_work work_on(const vxm_window *window, const char *phase, vxm_team_fn function,
-                             void *payload) {
-  return (vxm_team_work){.begin = window->begin,
-                         .end = window->end,
-                         .least = (window->end - window->begin + PIECES_MOST - 1) / PIECES_MOST,
-                         .phase = phase,
-                         .function = function,
-                         .payload = payload};
+static vxm_multi_device_work work_on(const vxm_window *window, const char *phase,
+                                     vxm_multi_device_fn function, void *payload) {
+  return (vxm_multi_device_work){.begin = window->begin,
+                                 .end = window->end,
+                                 .least = (window->end - window->begin + PIECES_MOST - 1) / PIECES_MOST,
+                                 .phase = phase,
+                                 .function = function,
+                                 .payload = payload};
 }
 
 typedef struct unite_work {
@@ -271,8 +272,8 @@ static vxm_status unite_part(vxm_engine *engine, int who, int64_t begin, int64_t
 
 static vxm_status unite(vxm_engine *base, const vxm_window *window, const vxm_parity_union_job *job,
                         vxm_error *error) {
-  vxm_team_work work = work_on(window, job->phase, unite_part, &(unite_work){window, job});
-  return vxm_team_run(vxm_team_of(base), &work, error);
+  vxm_multi_device_work work = work_on(window, job->phase, unite_part, &(unite_work){window, job});
+  return vxm_multi_device_run(vxm_multi_device_of(base), &work, error);
 }
 
 typedef struct vote_work {
@@ -319,8 +320,8 @@ static vxm_status vote_part(vxm_engine *engine, int who, int64_t begin, int64_t 
 static vxm_status vote(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
                        vxm_vote_tally *tally, vxm_error *error) {
   vote_work votes = {.window = window, .job = job, .context = base->context};
-  vxm_team_work work = work_on(window, "voting", vote_part, &votes);
-  vxm_status status = vxm_team_run(vxm_team_of(base), &work, error);
+  vxm_multi_device_work work = work_on(window, "voting", vote_part, &votes);
+  vxm_status status = vxm_multi_device_run(vxm_multi_device_of(base), &work, error);
   tally->contested += atomic_load(&votes.contested);
   tally->added |= atomic_load(&votes.added);
   return status;
@@ -343,63 +344,63 @@ static vxm_status surface_part(vxm_engine *engine, int who, int64_t begin, int64
 
 static vxm_status surface(vxm_engine *base, const vxm_surface *faces, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
-  vxm_team_work work =
+  vxm_multi_device_work work =
       work_on(window, "voxelizing the surface", surface_part, &(surface_work){window, faces, kind, is_fresh});
-  return vxm_team_run(vxm_team_of(base), &work, error);
+  return vxm_multi_device_run(vxm_multi_device_of(base), &work, error);
 }
 
 /* ---- What one of them does for all ---- */
 
 /** Goes through the members that are left and have an operation, until one does it. */
-#define BY_ONE(team, operation, call, error)                                                      \
-  do {                                                                                            \
-    vxm_error local = VXM_ERROR_INIT;                                                             \
-    vxm_fail(&local, VXM_ERROR_UNAVAILABLE, "no device is left: %.200s", (team)->base.info.note); \
-    for (int m = 0; m < (team)->count; m++) {                                                     \
-      vxm_engine *engine = (team)->members[m].engine;                                             \
-      if ((team)->members[m].is_lost || !engine->ops->operation)                                  \
-        continue;                                                                                 \
-      local = (vxm_error)VXM_ERROR_INIT;                                                          \
-      vxm_status status = call;                                                                   \
-      if (status == VXM_OK)                                                                       \
-        return VXM_OK;                                                                            \
-      if (!is_of_device(status))                                                                  \
-        break;                                                                                    \
-      if (status != VXM_ERROR_RANGE)                                                              \
-        lose(team, m, &local);                                                                    \
-    }                                                                                             \
-    vxm_error_pass(error, &local);                                                                \
-    return local.code;                                                                            \
+#define BY_ONE(group, operation, call, error)                                                      \
+  do {                                                                                             \
+    vxm_error local = VXM_ERROR_INIT;                                                              \
+    vxm_fail(&local, VXM_ERROR_UNAVAILABLE, "no device is left: %.200s", (group)->base.info.note); \
+    for (int m = 0; m < (group)->count; m++) {                                                     \
+      vxm_engine *engine = (group)->members[m].engine;                                             \
+      if ((group)->members[m].is_lost || !engine->ops->operation)                                  \
+        continue;                                                                                  \
+      local = (vxm_error)VXM_ERROR_INIT;                                                           \
+      vxm_status status = call;                                                                    \
+      if (status == VXM_OK)                                                                        \
+        return VXM_OK;                                                                             \
+      if (!is_of_device(status))                                                                   \
+        break;                                                                                     \
+      if (status != VXM_ERROR_RANGE)                                                               \
+        lose(group, m, &local);                                                                    \
+    }                                                                                              \
+    vxm_error_pass(error, &local);                                                                 \
+    return local.code;                                                                             \
   } while (0)
 
 static vxm_status sparse(vxm_engine *base, vxm_sparse **out, const vxm_space *space,
                          const vxm_sparse_job *job, vxm_error *error) {
-  vxm_team *team = vxm_team_of(base);
-  BY_ONE(team, sparse, engine->ops->sparse(engine, out, space, job, &local), error);
+  vxm_multi_device *group = vxm_multi_device_of(base);
+  BY_ONE(group, sparse, engine->ops->sparse(engine, out, space, job, &local), error);
 }
 
 static vxm_status color(vxm_engine *base, uint8_t *values, const vxm_color_job *job, vxm_error *error) {
-  vxm_team *team = vxm_team_of(base);
-  BY_ONE(team, color, engine->ops->color(engine, values, job, &local), error);
+  vxm_multi_device *group = vxm_multi_device_of(base);
+  BY_ONE(group, color, engine->ops->color(engine, values, job, &local), error);
 }
 
 static vxm_status count(vxm_engine *base, uint16_t *counts, const vxm_window *window, int n,
                         vxm_error *error) {
-  vxm_team *team = vxm_team_of(base);
-  BY_ONE(team, count, engine->ops->count(engine, counts, window, n, &local), error);
+  vxm_multi_device *group = vxm_multi_device_of(base);
+  BY_ONE(group, count, engine->ops->count(engine, counts, window, n, &local), error);
 }
 
 /* ---- Making and freeing ---- */
 
 static void destroy(vxm_engine *base) {
-  vxm_team *team = vxm_team_of(base);
-  for (int m = 0; m < team->count; m++)
-    vxm_engine_destroy(team->members[m].engine);
-  team->count = 0;
+  vxm_multi_device *group = vxm_multi_device_of(base);
+  for (int m = 0; m < group->count; m++)
+    vxm_engine_destroy(group->members[m].engine);
+  group->count = 0;
 }
 
-vxm_team *vxm_team_of(vxm_engine *engine) {
-  return engine && engine->ops && engine->ops->destroy == destroy ? (vxm_team *)engine : NULL;
+vxm_multi_device *vxm_multi_device_of(vxm_engine *engine) {
+  return engine && engine->ops && engine->ops->destroy == destroy ? (vxm_multi_device *)engine : NULL;
 }
 
 /** Texts of all, one behind the other, as far as there is room. */
@@ -408,36 +409,36 @@ static void join(char *out, size_t size, const char *text, const char *between) 
   snprintf(out + used, size - used, "%s%s", used > 0 ? between : "", text);
 }
 
-static void add(vxm_team *team, vxm_engine *engine) {
-  vxm_engine_info *info = &team->base.info;
+static void add(vxm_multi_device *group, vxm_engine *engine) {
+  vxm_engine_info *info = &group->base.info;
   const vxm_engine_ops *ops = engine->ops;
-  team->members[team->count++] = (vxm_team_member){.engine = engine};
+  group->members[group->count++] = (vxm_multi_device_member){.engine = engine};
   join(info->name, sizeof info->name, engine->info.name, "+");
   join(info->renderer, sizeof info->renderer, engine->info.renderer, "; ");
   info->hardware |= engine->info.hardware;
   info->available = true;
   info->devices++;
-  team->base.wants_apexes |= engine->wants_apexes;
-  team->ops.sparse = ops->sparse ? sparse : team->ops.sparse;
-  team->ops.color = ops->color ? color : team->ops.color;
-  team->ops.count = ops->count ? count : team->ops.count;
+  group->base.wants_apexes |= engine->wants_apexes;
+  group->ops.sparse = ops->sparse ? sparse : group->ops.sparse;
+  group->ops.color = ops->color ? color : group->ops.color;
+  group->ops.count = ops->count ? count : group->ops.count;
 }
 
-vxm_status vxm_team_create(vxm_engine **out, vxm_context *context, vxm_engine *const engines[], int number,
-                           vxm_error *error) {
+vxm_status vxm_multi_device_create(vxm_engine **out, vxm_context *context, vxm_engine *const engines[],
+                                   int number, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  vxm_team *team = vxm_calloc(context, 1, sizeof *team, &local);
-  if (!team) {
+  vxm_multi_device *group = vxm_calloc(context, 1, sizeof *group, &local);
+  if (!group) {
     for (int m = 0; m < number; m++)
       vxm_engine_destroy(engines[m]);
     vxm_error_pass(error, &local);
     return local.code;
   }
-  team->ops = (vxm_engine_ops){.unite = unite, .vote = vote, .surface = surface, .destroy = destroy};
-  team->base.ops = &team->ops;
-  team->base.context = context;
+  group->ops = (vxm_engine_ops){.unite = unite, .vote = vote, .surface = surface, .destroy = destroy};
+  group->base.ops = &group->ops;
+  group->base.context = context;
   for (int m = 0; m < number; m++)
-    add(team, engines[m]);
-  *out = &team->base;
+    add(group, engines[m]);
+  *out = &group->base;
   return VXM_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "gpu/team_names.h"
+#include "gpu/multi_device_names.h"
 #include "gpu/engines.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@ enum { NAME_MAX_LENGTH = 200 };
 typedef struct crew {
   vxm_context *context;
   const vxm_engine_options *options;
-  vxm_engine *engines[VXM_TEAM_MOST];
+  vxm_engine *engines[VXM_MULTI_DEVICE_MOST];
   int count;
 } crew;
 
@@ -34,7 +34,7 @@ static int parts_of(const char *name) {
   return digits > 0 && digits < 4 && colon[1 + digits] == '\0' ? atoi(colon + 1) : 0;
 }
 
-bool vxm_team_is_named(const char *name) {
+bool vxm_multi_device_is_named(const char *name) {
   return find_joint(name) || strcmp(name, "opencl:all") == 0 || strcmp(name, "opengl:all") == 0 ||
          parts_of(name) > 0;
 }
@@ -42,8 +42,8 @@ bool vxm_team_is_named(const char *name) {
 /** Each has a context of its own, in whose memory nobody else counts on, and which reports nothing. */
 static vxm_status add(crew *all, const char *name, vxm_error *error) {
   vxm_context *own = NULL;
-  if (all->count == VXM_TEAM_MOST)
-    return vxm_fail(error, VXM_ERROR_RANGE, "engine: more than %d devices at once", VXM_TEAM_MOST);
+  if (all->count == VXM_MULTI_DEVICE_MOST)
+    return vxm_fail(error, VXM_ERROR_RANGE, "engine: more than %d devices at once", VXM_MULTI_DEVICE_MOST);
   vxm_status status = vxm_context_child(&own, all->context, true, error);
   if (status == VXM_OK)
     status = vxm_engines_make(&all->engines[all->count], own, name, all->options, error);
@@ -73,8 +73,8 @@ static vxm_status add_all(crew *all, const char *kind, int number, const char *b
 
 static vxm_status add_parts(crew *all, const char *name, int parts, vxm_error *error) {
   vxm_status status = VXM_OK;
-  if (parts > VXM_TEAM_MOST)
-    return vxm_fail(error, VXM_ERROR_RANGE, "engine: more than %d devices at once", VXM_TEAM_MOST);
+  if (parts > VXM_MULTI_DEVICE_MOST)
+    return vxm_fail(error, VXM_ERROR_RANGE, "engine: more than %d devices at once", VXM_MULTI_DEVICE_MOST);
   for (int p = 0; p < parts && status == VXM_OK; p++) {
     char part[NAME_MAX_LENGTH + 16];
     snprintf(part, sizeof part, "%s.%d", name, p);
@@ -110,8 +110,8 @@ static vxm_status check(const crew *all, const vxm_engine_options *options, vxm_
   return VXM_OK;
 }
 
-vxm_status vxm_team_make(vxm_engine **out, vxm_context *context, const char *name,
-                         const vxm_engine_options *options, vxm_error *error) {
+vxm_status vxm_multi_device_make(vxm_engine **out, vxm_context *context, const char *name,
+                                 const vxm_engine_options *options, vxm_error *error) {
   crew all = {.context = context, .options = options};
   vxm_status status = VXM_OK;
   if (options->device)
@@ -130,7 +130,7 @@ vxm_status vxm_team_make(vxm_engine **out, vxm_context *context, const char *nam
   if (status == VXM_OK)
     status = check(&all, options, error);
   if (status == VXM_OK && all.count > 1)
-    return vxm_team_create(out, context, all.engines, all.count, error);
+    return vxm_multi_device_create(out, context, all.engines, all.count, error);
   char only[48] = "";
   if (status == VXM_OK)
     memcpy(only, all.engines[0]->info.name, sizeof only);
