@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The order of the rooms: each folder of src/ includes only its own files and those of folders before it, so that no
+# The order of the folders: each folder of src/ includes only its own files and those of folders before it, so that no
 # circle leaves a folder; the command line sees voxmend.h alone, and nothing below it prints or ends the program.
 set -eu
 cd "$SRCDIR/src"
@@ -11,7 +11,7 @@ complain() {
   bad=1
 }
 
-# What each folder may include comes before it. Within a room the folder of the same name, with its front, is the last.
+# What each folder may include comes before it. Of a folder with others in it what lies in it itself is the last.
 order="voxmend base mesh sandbox
   meshio/common meshio/formats meshio/external meshio
   repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/sheets repair/exact repair/bodies repair
@@ -24,7 +24,7 @@ order="voxmend base mesh sandbox
   export remesh augment carve experimental api
   modules/assimp modules/images modules/occt modules/openmesh modules/cgal modules/openvdb modules/hdf5 modules/octomap"
 
-# Modules share the rooms that their makefile lists, and not each other.
+# Modules share the folders that their makefile lists, and not each other.
 listed=" $(echo $order) batch cli "
 for folder in $(find . -name '*.[ch]' -o -name '*.cc' -o -name '*.inc' | sed 's|^\./||; s|/*[^/]*$||' | sort -u); do
   case $listed in
