@@ -47,7 +47,7 @@ vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error
     *out = NULL;
   if (!out || !grid)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
-  return vxm_gridio_surface_mesh(out, grid, VXM_SURFACE_MANIFOLD | VXM_SURFACE_TRIANGLES, error);
+  return vxm_gridio_surface_mesh(out, grid, VXM_SURFACE_MESH_MANIFOLD | VXM_SURFACE_MESH_TRIANGLES, error);
 }
 
 vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_picture_options *options,
