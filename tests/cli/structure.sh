@@ -58,6 +58,12 @@ for folder in $order; do
   [ -z "$found" ] || complain "$folder prints or ends the program" "$found"
 done
 
+# Calls need no include: what api defines is declared in the public headers, which all may include.
+public=$(grep -hE '^[a-z][a-z0-9_ *]* \**vxm_[a-z0-9_]*\(' api/*.c | grep -v '^static' | sed 's/(.*//; s/.*[ *]//' | sort -u | paste -sd '|')
+found=$(grep -nE "(^|[^a-z0-9_])($public)\(" $(find . -name '*.[ch]' -o -name '*.cc' -o -name '*.inc' | grep -vE '^\./(api|batch|cli|voxmend)/') |
+  grep -vE ':[[:space:]]*(/\*|\*|//)' || true)
+[ -z "$found" ] || complain "what comes before api calls it" "$found"
+
 found=$(for file in $(find . ../tests ../samples -name '*.[ch]' -o -name '*.cc'); do
   head -n 1 "$file" | grep -q 'SPDX-License-Identifier' || echo "$file"
 done)

@@ -27,7 +27,7 @@ vxm_status vxm_field_add_table(vxm_field *out, const vxm_label_table *table, vxm
         voxels[(size_t)row[v]]++;
   }
   for (size_t label = 1; status == VXM_OK && label <= labels; label++)
-    status = vxm_field_add_label(out, vxm_label_table_name(table, label), voxels[label], &local);
+    status = vxm_field_put_label(out, vxm_label_table_name(table, label), voxels[label], &local);
   vxm_free(out->context, row);
   vxm_free(out->context, voxels);
   if (status != VXM_OK)
@@ -49,6 +49,6 @@ vxm_status vxm_field_crop(vxm_field **out, const vxm_field *field, const int64_t
   if (about->table.count > 0)
     status = vxm_field_add_table(made, &about->table, error);
   for (const char *key = NULL; status == VXM_OK && (key = vxm_metadata_next(&about->pairs, key)) != NULL;)
-    status = vxm_field_add_metadata(made, key, vxm_metadata_value(key), error);
+    status = vxm_field_put_pair(made, key, vxm_metadata_value(key), error);
   return vxm_field_hand_over(out, made, status, error);
 }
