@@ -4,7 +4,7 @@
 #include "base/task_progress.h"
 #include "base/threads.h"
 #include "voxel/engine/engine.h"
-#include "voxel/model/model_keep.h"
+#include "voxel/model/model_device_voxels.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -364,7 +364,8 @@ vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const
   vxm_space space = vxm_worker_space(sampler->rules.options.resolution);
   vxm_status status = need_shared(&worker, sampler, error);
   if (status == VXM_OK)
-    status = vxm_keep_create(&voxels, sampler->rules.voxelize.engine, &space, (int64_t)count, format, error);
+    status = vxm_device_voxels_create(&voxels, sampler->rules.voxelize.engine, &space, (int64_t)count, format,
+                                      error);
   if (status != VXM_OK)
     return status;
   voxels->is_batch = true;

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "voxel/model/model_keep.h"
+#include "voxel/model/model_device_voxels.h"
 
-vxm_status vxm_keep_create(vxm_device_voxels **out, vxm_engine *engine, const vxm_space *space, int64_t count,
-                           vxm_voxel_format format, vxm_error *error) {
+vxm_status vxm_device_voxels_create(vxm_device_voxels **out, vxm_engine *engine, const vxm_space *space,
+                                    int64_t count, vxm_voxel_format format, vxm_error *error) {
   vxm_device_info shape = {.size = sizeof shape, .format = format, .count = count, .stayed = true};
-  if (!engine || !engine->ops || !engine->ops->keep)
+  if (!engine || !engine->ops || !engine->ops->device_voxels)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
                     "voxels stay on one device of OpenCL or OpenGL, and the engine is %s",
                     engine ? engine->info.name : "cpu");
   for (int a = 0; a < 3; a++)
     shape.dims[a] = space->dims[a];
-  return engine->ops->keep(engine, out, &shape, error);
+  return engine->ops->device_voxels(engine, out, &shape, error);
 }
 
 /** Whether the engine makes all of a grid, without a look at its words in between. */
@@ -36,13 +36,13 @@ static bool can_stay(const vxm_model_pass *pass) {
 static vxm_status keep_made_there(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
                                   const vxm_window *window, vxm_error *error) {
   vxm_engine *engine = pass->solid.engine;
-  vxm_status status = engine->ops->keep_begin(engine, window, error);
+  vxm_status status = engine->ops->device_voxels_begin(engine, window, error);
   if (status != VXM_OK)
     return status;
   engine->keeps = true;
   status = vxm_model_pass_fill(pass, window, error);
   engine->keeps = false;
-  return status == VXM_OK ? engine->ops->keep_end(engine, voxels, index, window, error) : status;
+  return status == VXM_OK ? engine->ops->device_voxels_end(engine, voxels, index, window, error) : status;
 }
 
 static vxm_status keep_made_here(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
@@ -54,7 +54,7 @@ static vxm_status keep_made_here(vxm_model_pass *pass, vxm_device_voxels *voxels
       vxm_alloc(context, window->slice_words, (size_t)window->slow_dim * sizeof(uint64_t), &local);
   vxm_status status = window->words ? vxm_model_pass_fill(pass, window, &local) : local.code;
   if (status == VXM_OK)
-    status = engine->ops->keep_end(engine, voxels, index, window, &local);
+    status = engine->ops->device_voxels_end(engine, voxels, index, window, &local);
   vxm_free(context, window->words);
   voxels->info.stayed = false;
   if (status != VXM_OK)
@@ -62,8 +62,8 @@ static vxm_status keep_made_here(vxm_model_pass *pass, vxm_device_voxels *voxels
   return status;
 }
 
-vxm_status vxm_model_pass_keep(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
-                               vxm_error *error) {
+vxm_status vxm_model_pass_device_voxels(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
+                                        vxm_error *error) {
   vxm_engine *engine = pass->solid.engine;
   vxm_window window = vxm_window_of(&pass->space, voxels->layout, 0, pass->space.dims[voxels->layout.slow]);
   vxm_error local = VXM_ERROR_INIT;
@@ -81,15 +81,15 @@ vxm_status vxm_model_pass_keep(vxm_model_pass *pass, vxm_device_voxels *voxels, 
   return status;
 }
 
-vxm_status vxm_voxelize_keep(vxm_device_voxels **out, vxm_model *model, const vxm_space *space,
-                             const double transform[12], vxm_voxel_format format, vxm_error *error) {
+vxm_status vxm_voxelize_device_voxels(vxm_device_voxels **out, vxm_model *model, const vxm_space *space,
+                                      const double transform[12], vxm_voxel_format format, vxm_error *error) {
   vxm_device_voxels *voxels = NULL;
   vxm_model_pass *pass = NULL;
-  vxm_status status = vxm_keep_create(&voxels, model->options.engine, space, 1, format, error);
+  vxm_status status = vxm_device_voxels_create(&voxels, model->options.engine, space, 1, format, error);
   if (status == VXM_OK)
     status = vxm_model_begin(&pass, model, space, transform, NULL, error);
   if (status == VXM_OK)
-    status = vxm_model_pass_keep(pass, voxels, 0, error);
+    status = vxm_model_pass_device_voxels(pass, voxels, 0, error);
   vxm_model_close(model, pass);
   if (status == VXM_OK)
     *out = voxels;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Voxels that stay in a buffer of the device: shaders/keep.cl. */
+/** Voxels that stay in a buffer of the device: shaders/device_voxels.cl. */
 #include "gpu/opencl/cl_solid.h"
 
 /** It holds the driver's objects, not the engine: any thread may drop it. */
@@ -43,8 +43,8 @@ static vxm_status make_buffer(vxm_opencl *engine, vxm_device_voxels *made, vxm_e
   return vxm_cl_check(code, "making a buffer", error);
 }
 
-vxm_status vxm_cl_keep(vxm_engine *base, vxm_device_voxels **out, const vxm_device_info *shape,
-                       vxm_error *error) {
+vxm_status vxm_cl_device_voxels(vxm_engine *base, vxm_device_voxels **out, const vxm_device_info *shape,
+                                vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
   vxm_device_info info = *shape;
   vxm_error local = VXM_ERROR_INIT;
@@ -88,7 +88,7 @@ static size_t offset_of(const vxm_slice_job *tile) {
   return (size_t)(tile->begin - tile->window->begin) * vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
 }
 
-vxm_status vxm_cl_keep_begin(vxm_engine *base, const vxm_window *window, vxm_error *error) {
+vxm_status vxm_cl_device_voxels_begin(vxm_engine *base, const vxm_window *window, vxm_error *error) {
   return vxm_cl_clear(vxm_opencl_of(base), VXM_CL_STAYING, bytes_of(window), error);
 }
 
@@ -124,17 +124,18 @@ static vxm_status take(vxm_opencl *engine, const vxm_device_info *info, int64_t 
                         "copying a buffer", error);
   const cl_uint2 shape = {{(cl_uint)(2 * window->row_words), (cl_uint)window->fast_dim}};
   const cl_ulong first = at / element, words = bytes / sizeof(cl_uint);
-  vxm_status status = vxm_cl_ready(engine, VXM_CL_KEEP, error);
+  vxm_status status = vxm_cl_ready(engine, VXM_CL_DEVICE_VOXELS, error);
   return status == VXM_OK
-             ? vxm_cl_run(engine, element == 1 ? VXM_CL_KEEP_BYTES : VXM_CL_KEEP_FLOATS, words,
+             ? vxm_cl_run(engine, element == 1 ? VXM_CL_DEVICE_VOXELS_BYTES : VXM_CL_DEVICE_VOXELS_FLOATS,
+                          words,
                           VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_STAYING), VXM_CL_VALUE(to),
                                       VXM_CL_VALUE(shape), VXM_CL_VALUE(first), VXM_CL_VALUE(words)),
                           error)
              : status;
 }
 
-vxm_status vxm_cl_keep_end(vxm_engine *base, vxm_device_voxels *voxels, int64_t index,
-                           const vxm_window *window, vxm_error *error) {
+vxm_status vxm_cl_device_voxels_end(vxm_engine *base, vxm_device_voxels *voxels, int64_t index,
+                                    const vxm_window *window, vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
   vxm_status status = VXM_OK;
   if (window->words)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Voxels that stay in a 3D texture of the engine's context: shaders/keep.comp. */
+/** Voxels that stay in a 3D texture of the engine's context: shaders/device_voxels.comp. */
 #include "gpu/opengl/gl_solid.h"
 
 /** A texture lives in the context of its engine, which it holds. */
@@ -87,8 +87,8 @@ static vxm_status make(vxm_opengl *engine, vxm_device_voxels **out, vxm_device_i
   return status;
 }
 
-vxm_status vxm_gl_keep(vxm_engine *base, vxm_device_voxels **out, const vxm_device_info *shape,
-                       vxm_error *error) {
+vxm_status vxm_gl_device_voxels(vxm_engine *base, vxm_device_voxels **out, const vxm_device_info *shape,
+                                vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
   vxm_device_info info = *shape;
   bool is_osmesa = engine->context.driver == &vxm_gl_osmesa;
@@ -118,7 +118,7 @@ static size_t offset_of(const vxm_slice_job *tile) {
   return (size_t)(tile->begin - tile->window->begin) * vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
 }
 
-vxm_status vxm_gl_keep_begin(vxm_engine *base, const vxm_window *window, vxm_error *error) {
+vxm_status vxm_gl_device_voxels_begin(vxm_engine *base, const vxm_window *window, vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
   const vxm_gl *gl = &engine->context.gl;
   vxm_status status = vxm_gl_enter(&engine->context, error);
@@ -161,7 +161,7 @@ static vxm_status take(vxm_opengl *engine, const vxm_device_info *info, const vx
   const vxm_gl *gl = &engine->context.gl;
   GLuint words = (GLuint)(bytes_of(window) / sizeof(uint32_t));
   GLuint unit = info->format == VXM_VOXEL_FORMAT_FLOAT32 ? 1 : 0;
-  vxm_status status = vxm_gl_use(engine, VXM_GL_KEEP, error);
+  vxm_status status = vxm_gl_use(engine, VXM_GL_DEVICE_VOXELS, error);
   if (status != VXM_OK)
     return status;
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -177,8 +177,8 @@ static vxm_status take(vxm_opengl *engine, const vxm_device_info *info, const vx
   return vxm_gl_check(gl, "opengl: keeping voxels", error);
 }
 
-vxm_status vxm_gl_keep_end(vxm_engine *base, vxm_device_voxels *voxels, int64_t index,
-                           const vxm_window *window, vxm_error *error) {
+vxm_status vxm_gl_device_voxels_end(vxm_engine *base, vxm_device_voxels *voxels, int64_t index,
+                                    const vxm_window *window, vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
   (void)index; /* there is one */
   vxm_status status = vxm_gl_enter(&engine->context, error);
