@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "repair/state/set_sides.h"
+#include "repair/state/face_set_sides.h"
 
 #include "mesh/geometry.h"
 #include "mesh/point_in_mesh.h"
@@ -21,7 +21,7 @@ typedef struct asking {
 
 typedef struct keyed_set {
   size_t group;
-  vxm_set_side set;
+  vxm_face_set_side set;
 } keyed_set;
 
 static int by_group_then_face(const void *a, const void *b) {
@@ -83,7 +83,7 @@ static void find_middle(const asking *a, size_t face, double middle[3]) {
                 3;
 }
 
-static vxm_status ask(vxm_set_side *set, const asking *a, vxm_point_in_mesh *inside, bool balanced,
+static vxm_status ask(vxm_face_set_side *set, const asking *a, vxm_point_in_mesh *inside, bool balanced,
                       double gap, vxm_error *error) {
   size_t count;
   const uint32_t *corner = vxm_face(a->state->soup, set->face, &count);
@@ -145,8 +145,8 @@ static vxm_status ask_all(keyed_set *sets, size_t count, const asking *a, vxm_er
   return status;
 }
 
-vxm_status vxm_set_sides_find(vxm_set_side *sets, size_t count, vxm_repair_state *state,
-                              const vxm_edge_groups *groups, const uint8_t *bound, vxm_error *error) {
+vxm_status vxm_face_set_sides_find(vxm_face_set_side *sets, size_t count, vxm_repair_state *state,
+                                   const vxm_edge_groups *groups, const uint8_t *bound, vxm_error *error) {
   if (count == 0)
     return VXM_OK;
   vxm_status status = VXM_OK;
