@@ -4,7 +4,7 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 
-/* vxm_moved_job */
+/* vxm_device_transform_job */
 typedef struct MoveJob {
   double row[3][4];
   double origin[4], scale[4]; /* the fourth scale is what all steps stay below */

@@ -46,7 +46,7 @@ def _poses(path: ArrayLike) -> Floats:
 
 class Carver(Generic[Stock]):
     """A tool on its way through a copy of a grid, or through an octree: every voxel is removed whose centre comes to lie
-    within the tool, at any time of its way. Straight ways are covered exactly, however long a step is; through turns no point
+    within the tool, anywhere along its path. Straight steps are covered exactly, however long; through turns no point
     moves by more than half a voxel at a time, without gaps. doc/carve.md has the rules.
 
     Args:

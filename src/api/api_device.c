@@ -3,7 +3,7 @@
 #include "augment/sampler.h"
 #include "base/sized.h"
 #include "grid/space.h"
-#include "voxel/model/model_keep.h"
+#include "voxel/model/model_device_voxels.h"
 
 static vxm_status check_format(vxm_voxel_format format, vxm_error *error) {
   if ((unsigned)format <= VXM_VOXEL_FORMAT_FLOAT32)
@@ -20,7 +20,7 @@ vxm_status vxm_model_voxelize_device(vxm_device_voxels **out, vxm_model *model, 
   vxm_status status = check_format(format, error);
   if (status == VXM_OK)
     status = vxm_space_check(space, error);
-  return status == VXM_OK ? vxm_voxelize_keep(out, model, space, transform, format, error) : status;
+  return status == VXM_OK ? vxm_voxelize_device_voxels(out, model, space, transform, format, error) : status;
 }
 
 vxm_status vxm_sampler_batch_device(vxm_device_voxels **out, vxm_sampler *sampler,

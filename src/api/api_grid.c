@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that read, write and draw grids: they check arguments and call down. */
 #include "base/sized.h"
-#include "grid/cut.h"
+#include "grid/crop.h"
 #include "gridio/formats/confidence.h"
 #include "gridio/gridio.h"
 #include "gridio/mesh/surface_mesh.h"
@@ -47,7 +47,7 @@ vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error
     *out = NULL;
   if (!out || !grid)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
-  return vxm_gridio_surface_mesh(out, grid, VXM_SURFACE_MANIFOLD | VXM_SURFACE_TRIANGLES, error);
+  return vxm_gridio_surface_mesh(out, grid, VXM_SURFACE_MESH_MANIFOLD | VXM_SURFACE_MESH_TRIANGLES, error);
 }
 
 vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_picture_options *options,
@@ -81,5 +81,5 @@ vxm_status vxm_grid_window(vxm_grid **out, const vxm_grid *grid, const int64_t b
   if (!out || !grid || !begin || !end)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
   vxm_status status = vxm_space_check_box(&grid->space, begin, end, error);
-  return status == VXM_OK ? vxm_grid_cut(out, grid, begin, end, error) : status;
+  return status == VXM_OK ? vxm_grid_crop(out, grid, begin, end, error) : status;
 }

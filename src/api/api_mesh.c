@@ -228,7 +228,7 @@ vxm_status vxm_mesh_write(const vxm_mesh *mesh, const char *path, const vxm_mesh
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
   vxm_mesh_write_options chosen = VXM_MESH_WRITE_OPTIONS_INIT;
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "mesh", error);
-  return status == VXM_OK ? vxm_meshio_write(mesh, path, chosen.format, vxm_meshio_how(&chosen), error)
+  return status == VXM_OK ? vxm_meshio_write(mesh, path, chosen.format, vxm_write_flags_of(&chosen), error)
                           : status;
 }
 

@@ -143,13 +143,6 @@ int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind) {
   return defects && kind >= 0 && kind < VXM_DEFECT_KINDS ? defects->totals[kind] : 0;
 }
 
-const char *vxm_defect_name(vxm_defect_kind kind) {
-  static const char *const names[VXM_DEFECT_KINDS] = {
-      "nonfinite_vertex", "degenerate_face",   "duplicate_face",     "boundary_edge",
-      "nonmanifold_edge", "inconsistent_edge", "nonmanifold_vertex", "self_intersection"};
-  return kind >= 0 && kind < VXM_DEFECT_KINDS ? names[kind] : "";
-}
-
 vxm_status vxm_defects_write(const vxm_defects *defects, const vxm_mesh *mesh, const char *path,
                              vxm_error *error) {
   if (!defects || !mesh || !path)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of sparse sets of voxels: they check arguments and call down. */
 #include "base/sized.h"
-#include "grid/cut.h"
-#include "grid/octree_cut.h"
+#include "grid/crop.h"
+#include "grid/octree_crop.h"
 #include "gridio/formats/coords.h"
-#include "gridio/formats/octree_values.h"
+#include "gridio/formats/octree/octree_values.h"
 #include "gridio/gridio.h"
 #include "gridio/sparse_coverage.h"
 #include "gridio/sparse_write.h"
@@ -40,7 +40,7 @@ int64_t vxm_sparse_count(const vxm_sparse *sparse) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (sparse)
-    vxm_octree_sum(sparse, &count, &hash);
+    vxm_octree_count_hash(sparse, &count, &hash);
   return count;
 }
 
@@ -48,7 +48,7 @@ uint64_t vxm_sparse_hash(const vxm_sparse *sparse) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (sparse)
-    vxm_octree_sum(sparse, &count, &hash);
+    vxm_octree_count_hash(sparse, &count, &hash);
   return hash;
 }
 
@@ -144,7 +144,7 @@ vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int
   if (!out || !sparse || !begin || !end)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
   vxm_status status = vxm_space_check_box(&sparse->space, begin, end, error);
-  return status == VXM_OK ? vxm_octree_cut(out, sparse, begin, end, error) : status;
+  return status == VXM_OK ? vxm_octree_crop(out, sparse, begin, end, error) : status;
 }
 
 vxm_status vxm_sparse_coverage(vxm_field **out, const vxm_sparse *sparse, const vxm_coverage_options *options,
@@ -218,7 +218,7 @@ vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, c
     status = vxm_octree_file_load(&part, file, begin, end, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_octree_cut(out, part, begin, end, error);
+  status = vxm_octree_crop(out, part, begin, end, error);
   vxm_sparse_destroy(part);
   return status;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about fields in files: they check arguments and call down. */
 #include "base/sized.h"
-#include "grid/cut.h"
-#include "gridio/common/values_cut.h"
+#include "grid/crop.h"
+#include "gridio/common/values_crop.h"
 #include "gridio/gridio.h"
 #include "gridio/page/page.h"
 #include "gridio/picture/picture.h"
@@ -94,7 +94,7 @@ vxm_status vxm_field_window(vxm_field **out, const vxm_field *field, const int64
   if (!out || !field || !begin || !end)
     return fail_null(error);
   vxm_status status = vxm_space_check_box(&field->space, begin, end, error);
-  return status == VXM_OK ? vxm_field_cut(out, field, begin, end, error) : status;
+  return status == VXM_OK ? vxm_field_crop(out, field, begin, end, error) : status;
 }
 
 /* ---- What it holds ---- */
@@ -149,9 +149,7 @@ vxm_status vxm_field_add_label(vxm_field *field, const char *name, int64_t voxel
     return fail_null(error);
   if (voxels < 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: a label of %" PRId64 " voxels", voxels);
-  if (!vxm_label_table_add(&field->about.table, field->context, name, voxels))
-    return vxm_fail(error, VXM_ERROR_MEMORY, "field: no room for another label");
-  return VXM_OK;
+  return vxm_field_put_label(field, name, voxels, error);
 }
 
 vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char *value, vxm_error *error) {
@@ -159,9 +157,7 @@ vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char 
     return fail_null(error);
   if (!*key)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: metadata without a key");
-  if (!vxm_metadata_add(&field->about.pairs, field->context, key, strlen(key), value, strlen(value)))
-    return vxm_fail(error, VXM_ERROR_RANGE, "field: no room for more metadata");
-  return VXM_OK;
+  return vxm_field_put_pair(field, key, value, error);
 }
 
 int64_t vxm_field_warning_count(const vxm_field *field) {

@@ -4,7 +4,7 @@
 #include "base/task_progress.h"
 #include "base/threads.h"
 #include "voxel/engine/engine.h"
-#include "voxel/model/model_keep.h"
+#include "voxel/model/model_device_voxels.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -80,7 +80,7 @@ void vxm_sampler_destroy(vxm_sampler *sampler) {
   vxm_context *context = sampler->context;
   for (int d = 0; sampler->workers && d <= vxm_context_threads(context); d++)
     vxm_worker_destroy(&sampler->workers[d]);
-  for (int s = 0; s < VXM_TEAM_MOST; s++)
+  for (int s = 0; s < VXM_MULTI_DEVICE_MOST; s++)
     vxm_worker_destroy(&sampler->seats[s]);
   for (size_t s = 0; s < sampler->subject_count; s++)
     vxm_sampler_model_destroy(&sampler->subjects[s]);
@@ -115,7 +115,7 @@ static bool is_there(const vxm_sampler *sampler, size_t place, uint32_t model) {
 static void detach(vxm_sampler *sampler) {
   for (int d = 0; d <= vxm_context_threads(sampler->context); d++)
     sampler->workers[d].instance.of = NULL;
-  for (int s = 0; s < VXM_TEAM_MOST; s++)
+  for (int s = 0; s < VXM_MULTI_DEVICE_MOST; s++)
     sampler->seats[s].instance.of = NULL;
 }
 
@@ -271,8 +271,8 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
   return job->error.code;
 }
 
-/** Variants by one of several devices that work at once. A file that cannot be written is not the device's
- * fault, as whose the team would take it: it ends the work. */
+/** Variants by one of several devices that work at once. That a file cannot be written is no fault of the
+ * device, for which the group would take it: it ends the work. */
 static vxm_status make_there(vxm_engine *engine, int who, int64_t begin, int64_t end, void *payload,
                              vxm_error *error) {
   batch_job *job = payload;
@@ -293,11 +293,11 @@ static vxm_status make_there(vxm_engine *engine, int who, int64_t begin, int64_t
   return status;
 }
 
-static vxm_status make_by_team(batch_job *job, vxm_team *team, size_t count, vxm_error *error) {
-  vxm_team_work work = {
+static vxm_status make_by_group(batch_job *job, vxm_multi_device *group, size_t count, vxm_error *error) {
+  vxm_multi_device_work work = {
       .end = (int64_t)count, .least = 1, .phase = "making variants", .function = make_there, .payload = job};
   vxm_error local = VXM_ERROR_INIT;
-  vxm_status status = vxm_team_run(team, &work, &local);
+  vxm_status status = vxm_multi_device_run(group, &work, &local);
   if (status == VXM_OK)
     return VXM_OK;
   const vxm_error *told = atomic_load(&job->failed_at) == SIZE_MAX ? &local : &job->error;
@@ -320,9 +320,9 @@ static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
   int64_t dim = options->resolution * (options->coverage > 0 ? options->coverage : 1);
   if (count > 1 && dim <= ALONE_MOST && !has_engine(sampler))
     return make_alone(job, count, error);
-  vxm_team *team = vxm_team_of(sampler->rules.voxelize.engine);
-  if (team && count > 1)
-    return make_by_team(job, team, count, error);
+  vxm_multi_device *group = vxm_multi_device_of(sampler->rules.voxelize.engine);
+  if (group && count > 1)
+    return make_by_group(job, group, count, error);
   vxm_worker *worker;
   vxm_status status = need_shared(&worker, sampler, error);
   for (size_t v = 0; v < count && status == VXM_OK; v++)
@@ -364,7 +364,8 @@ vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const
   vxm_space space = vxm_worker_space(sampler->rules.options.resolution);
   vxm_status status = need_shared(&worker, sampler, error);
   if (status == VXM_OK)
-    status = vxm_keep_create(&voxels, sampler->rules.voxelize.engine, &space, (int64_t)count, format, error);
+    status = vxm_device_voxels_create(&voxels, sampler->rules.voxelize.engine, &space, (int64_t)count, format,
+                                      error);
   if (status != VXM_OK)
     return status;
   voxels->is_batch = true;

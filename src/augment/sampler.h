@@ -4,7 +4,7 @@
 #define VXM_AUGMENT_SAMPLER_H
 
 #include "augment/worker.h"
-#include "gpu/team.h"
+#include "gpu/multi_device.h"
 
 struct vxm_sampler {
   vxm_context *context; /**< one reference held */
@@ -13,8 +13,8 @@ struct vxm_sampler {
   vxm_noise noise;
   vxm_sampler_model *subjects; /**< in the order of their numbers */
   size_t subject_count, subject_room;
-  vxm_worker *workers;             /**< one for each thread, and then one for all of them together */
-  vxm_worker seats[VXM_TEAM_MOST]; /**< one for each device, where several work at once */
+  vxm_worker *workers;                     /**< one for each thread, and then one for all of them together */
+  vxm_worker seats[VXM_MULTI_DEVICE_MOST]; /**< one for each device, where several work at once */
 };
 
 /** See vxm_sampler_create in voxmend.h; the options have been checked. */

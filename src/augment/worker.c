@@ -3,7 +3,7 @@
 #include "augment/density.h"
 #include "augment/unpack_bits.h"
 #include "gridio/gridio.h"
-#include "voxel/model/model_keep.h"
+#include "voxel/model/model_device_voxels.h"
 
 #include <math.h>
 #include <string.h>
@@ -83,7 +83,8 @@ vxm_status vxm_worker_keep(vxm_worker *worker, vxm_device_voxels *voxels, int64_
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error) {
   vxm_status status = place(worker, voxels->info.dims[0], subject, placement, noise, false, error);
-  return status == VXM_OK ? vxm_model_pass_keep(&worker->instance.pass, voxels, index, error) : status;
+  return status == VXM_OK ? vxm_model_pass_device_voxels(&worker->instance.pass, voxels, index, error)
+                          : status;
 }
 
 vxm_status vxm_worker_fill(vxm_worker *worker, const vxm_window *window, const vxm_sampler_model *subject,

@@ -15,7 +15,7 @@ extern "C" {
 /** Writes the message and returns `code`, so that callers can `return vxm_fail(...)`. */
 vxm_status vxm_fail(vxm_error *error, vxm_status code, const char *format, ...) VXM_PRINTF(3, 4);
 
-/** Where a failure lies; the parts that do not apply are 0, -1, -1 as in VXM_PLACE_NONE. */
+/** Where a failure lies; the parts that do not apply are 0, -1, -1. */
 typedef struct vxm_place {
   const char *file;
   int64_t line;

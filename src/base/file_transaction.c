@@ -7,7 +7,7 @@
 
 /* ---- Lists ---- */
 
-vxm_file_transaction_file *vxm_file_transaction_file_create(const vxm_new_file *file, const char *path) {
+vxm_file_transaction_file *vxm_file_transaction_file_create(const vxm_atomic_file *file, const char *path) {
   vxm_file_transaction_file *held = malloc(sizeof *held);
   char *name = held ? strdup(path) : NULL;
   if (!name) {
@@ -18,10 +18,10 @@ vxm_file_transaction_file *vxm_file_transaction_file_create(const vxm_new_file *
   return held;
 }
 
-vxm_file_transaction_file *vxm_file_transaction_folder_create(const vxm_new_folder *folder,
+vxm_file_transaction_file *vxm_file_transaction_folder_create(const vxm_atomic_folder *folder,
                                                               const char *path) {
-  vxm_new_folder *taken = malloc(sizeof *taken);
-  const vxm_new_file none = {.spot = {.folder = -1, .device = -1}, .descriptor = -1};
+  vxm_atomic_folder *taken = malloc(sizeof *taken);
+  const vxm_atomic_file none = {.destination = {.folder = -1, .device = -1}, .descriptor = -1};
   vxm_file_transaction_file *held = taken ? vxm_file_transaction_file_create(&none, path) : NULL;
   if (!held) {
     free(taken);
@@ -34,28 +34,28 @@ vxm_file_transaction_file *vxm_file_transaction_folder_create(const vxm_new_fold
 
 static void close_held(vxm_file_transaction_file *held) {
   if (held->folder)
-    vxm_new_folder_close(held->folder);
+    vxm_atomic_folder_close(held->folder);
   else
-    vxm_new_file_close(&held->file);
+    vxm_atomic_file_close(&held->file);
   free(held->folder);
 }
 
 static vxm_status publish_held(vxm_file_transaction_file *held, bool keeps_old, vxm_error *error) {
   if (held->folder)
-    return vxm_new_folder_publish(held->folder, held->path, error);
-  return vxm_new_file_publish(&held->file, keeps_old) ? VXM_OK
-                                                      : vxm_fail_errno(error, held->path, "cannot write");
+    return vxm_atomic_folder_publish(held->folder, held->path, error);
+  return vxm_atomic_file_publish(&held->file, keeps_old) ? VXM_OK
+                                                         : vxm_fail_errno(error, held->path, "cannot write");
 }
 
 static void revert_held(vxm_file_transaction_file *held) {
   if (held->folder)
-    vxm_new_folder_revert(held->folder);
+    vxm_atomic_folder_revert(held->folder);
   else
-    vxm_new_file_revert(&held->file);
+    vxm_atomic_file_revert(&held->file);
 }
 
 static const vxm_output_path *spot_of(const vxm_file_transaction_file *held) {
-  return held->folder ? &held->folder->spot : &held->file.spot;
+  return held->folder ? &held->folder->destination : &held->file.destination;
 }
 
 void vxm_file_transaction_drop(vxm_file_transaction_file *list) {

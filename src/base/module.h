@@ -2,7 +2,7 @@
 /**
  * Optional parts that need large libraries lie in modules of their own, voxmend-NAME.so, opened when they are
  * first needed: a program that reads an OFF file does not wait for the 50 ms that the libraries of STEP or
- * VDB files take to load. A module is made of an adapter and of the base room, and exports one vxm_module.
+ * VDB files take to load. A module is made of an adapter and of the base folder, and exports one vxm_module.
  */
 #ifndef VXM_BASE_MODULE_H
 #define VXM_BASE_MODULE_H
@@ -22,7 +22,7 @@ typedef struct vxm_module {
   const char *build;     /**< VXM_BUILD: has to be that of the library, as both share structures */
   const char *library;   /**< what it is made with, such as "OpenVDB 10.0.1" */
   const char *licence;   /**< of the module, an SPDX expression */
-  const void *functions; /**< a structure of function pointers, declared by the room that uses the module */
+  const void *functions; /**< a structure of function pointers, declared by the folder that uses the module */
 } vxm_module;
 
 #define VXM_MODULE_SYMBOL "vxm_module_table"

@@ -23,7 +23,7 @@ static const uint64_t LARGE_FILE = UINT64_C(1) << 20;
 
 struct vxm_output {
   vxm_context *context;
-  vxm_new_file file; /**< if `is_file` */
+  vxm_atomic_file file; /**< if `is_file` */
   bool is_file, is_stdout;
   int descriptor; /**< what is written to */
   int failure;    /**< errno of the first failed write */
@@ -48,24 +48,25 @@ static void output_free(vxm_output *output) {
 
 /** A device or pipe (/dev/null) cannot be replaced by a rename, and is written straight to. */
 static vxm_status open_path(vxm_output *output, const char *path, vxm_error *error) {
-  vxm_output_path spot;
+  vxm_output_path destination;
   output->path = strdup(path);
   if (!output->path)
     return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  if (!vxm_output_path_find(&spot, path))
+  if (!vxm_output_path_find(&destination, path))
     return vxm_fail_errno(
         error, path,
-        spot.is_strangers ? "cannot write through another user's link in a folder that everybody may write to"
-                          : "cannot write");
-  if (spot.device >= 0) {
-    output->descriptor = spot.device;
-    spot.device = -1;
-    vxm_output_path_close(&spot);
+        destination.is_strangers
+            ? "cannot write through another user's link in a folder that everybody may write to"
+            : "cannot write");
+  if (destination.device >= 0) {
+    output->descriptor = destination.device;
+    destination.device = -1;
+    vxm_output_path_close(&destination);
     return VXM_OK;
   }
-  if (!vxm_new_file_open(&output->file, &spot)) {
+  if (!vxm_atomic_file_open(&output->file, &destination)) {
     vxm_fail_errno(error, path, "cannot write");
-    vxm_output_path_close(&spot);
+    vxm_output_path_close(&destination);
     return VXM_ERROR_IO;
   }
   output->is_file = true;
@@ -306,7 +307,7 @@ static void close_all(vxm_output *output) {
     output->descriptor = output->target;
   }
   if (output->is_file)
-    vxm_new_file_close(&output->file);
+    vxm_atomic_file_close(&output->file);
   else if (!output->is_stdout && output->descriptor >= 0)
     close(output->descriptor);
 }
@@ -326,7 +327,7 @@ static void complete(vxm_output *output) {
   if (output->failure || output->is_stdout)
     return;
   if (output->is_file) {
-    if (!vxm_new_file_prepare(&output->file))
+    if (!vxm_atomic_file_prepare(&output->file))
       output->failure = errno;
     return;
   }

@@ -11,8 +11,8 @@ extern "C" {
 
 /**
  * A buffered output. What is written has no name, or a temporary one in the folder of `path`, before
- * vxm_output_commit (base/new_file.h); "-" goes to standard output. A failed write is remembered and reported
- * by commit.
+ * vxm_output_commit (base/atomic_file.h); "-" goes to standard output. A failed write is remembered and
+ * reported by commit.
  */
 typedef struct vxm_output vxm_output;
 

@@ -10,9 +10,9 @@
 
 enum { LINKS_MAX = 40 /**< as the kernel follows */, PROC_MAGIC = 0x9fa0 };
 
-/** A path on the way; its folder's descriptor is the spot's. */
+/** A path on the way; its folder's descriptor is the destination's. */
 typedef struct walk {
-  vxm_output_path *spot;
+  vxm_output_path *destination;
   char rest[PATH_MAX]; /**< what is still to be followed, without leading slashes */
   int links;
 } walk;
@@ -22,12 +22,12 @@ static bool fail(int reason) {
   return false;
 }
 
-static bool set_folder(vxm_output_path *spot, int folder) {
+static bool set_folder(vxm_output_path *destination, int folder) {
   if (folder < 0)
     return false;
-  if (spot->folder >= 0)
-    close(spot->folder);
-  spot->folder = folder;
+  if (destination->folder >= 0)
+    close(destination->folder);
+  destination->folder = folder;
   return true;
 }
 
@@ -38,7 +38,7 @@ static bool set_rest(walk *w, const char *path) {
     return fail(ENOENT);
   if (length >= sizeof w->rest)
     return fail(ENAMETOOLONG);
-  if (*path == '/' && !set_folder(w->spot, open("/", O_PATH | O_DIRECTORY | O_CLOEXEC)))
+  if (*path == '/' && !set_folder(w->destination, open("/", O_PATH | O_DIRECTORY | O_CLOEXEC)))
     return false;
   path += strspn(path, "/");
   memmove(w->rest, path, strlen(path) + 1);
@@ -63,9 +63,10 @@ static bool is_open_device(int folder, const char *name, int link) {
          fstatat(folder, name, &target, 0) == 0 && !S_ISREG(target.st_mode) && !S_ISDIR(target.st_mode);
 }
 
-static bool open_device(vxm_output_path *spot, int flags) {
-  spot->device = openat(spot->folder, spot->name, O_WRONLY | O_CLOEXEC | O_NOCTTY | flags);
-  return spot->device >= 0;
+static bool open_device(vxm_output_path *destination, int flags) {
+  destination->device =
+      openat(destination->folder, destination->name, O_WRONLY | O_CLOEXEC | O_NOCTTY | flags);
+  return destination->device >= 0;
 }
 
 /** Puts a link's target in front of the rest. */
@@ -87,53 +88,53 @@ static bool follow(walk *w, int link, const char *after) {
 
 typedef enum step { STEP_ON, STEP_THERE, STEP_FAILED } step;
 
-/** The last part of the path, or a link on the way; `item` is what the spot's name stands for. */
+/** The last part of the path, or a link on the way; `item` is what the destination's name stands for. */
 static step take_item(walk *w, int item, const char *after) {
-  vxm_output_path *spot = w->spot;
+  vxm_output_path *destination = w->destination;
   struct stat info;
   bool is_last = !*after;
   if (fstat(item, &info) != 0)
     return STEP_FAILED;
   if (S_ISLNK(info.st_mode)) {
-    spot->is_strangers = is_strangers(spot->folder, &info);
-    if (spot->is_strangers)
+    destination->is_strangers = is_strangers(destination->folder, &info);
+    if (destination->is_strangers)
       return fail(EACCES) ? STEP_THERE : STEP_FAILED;
-    if (is_last && is_open_device(spot->folder, spot->name, item))
-      return open_device(spot, 0) ? STEP_THERE : STEP_FAILED;
+    if (is_last && is_open_device(destination->folder, destination->name, item))
+      return open_device(destination, 0) ? STEP_THERE : STEP_FAILED;
     return follow(w, item, after) ? STEP_ON : STEP_FAILED;
   }
   if (!is_last)
     return fail(ENOTDIR) ? STEP_THERE : STEP_FAILED;
   if (S_ISREG(info.st_mode))
     return STEP_THERE;
-  return open_device(spot, O_NOFOLLOW) ? STEP_THERE : STEP_FAILED;
+  return open_device(destination, O_NOFOLLOW) ? STEP_THERE : STEP_FAILED;
 }
 
 static step take_part(walk *w) {
-  vxm_output_path *spot = w->spot;
+  vxm_output_path *destination = w->destination;
   size_t length = strcspn(w->rest, "/");
   if (length == 0 || length > NAME_MAX)
     return fail(length == 0 ? EISDIR : ENAMETOOLONG) ? STEP_THERE : STEP_FAILED;
-  memcpy(spot->name, w->rest, length);
-  spot->name[length] = '\0';
+  memcpy(destination->name, w->rest, length);
+  destination->name[length] = '\0';
   char after[PATH_MAX];
   snprintf(after, sizeof after, "%s", w->rest + length);
   const char *next = after + strspn(after, "/");
   bool is_last = !*after; /* "a/" is a folder, and so its end is refused when nothing is left */
-  int folder = openat(spot->folder, spot->name, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  int folder = openat(destination->folder, destination->name, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (folder >= 0) {
     if (is_last) {
       close(folder);
       return fail(EISDIR) ? STEP_THERE : STEP_FAILED;
     }
     memmove(w->rest, next, strlen(next) + 1);
-    return set_folder(spot, folder) ? STEP_ON : STEP_FAILED;
+    return set_folder(destination, folder) ? STEP_ON : STEP_FAILED;
   }
   if (errno == ENOENT && is_last)
     return STEP_THERE;
   if (errno != ENOTDIR && errno != ELOOP)
     return STEP_FAILED;
-  int item = openat(spot->folder, spot->name, O_PATH | O_NOFOLLOW | O_CLOEXEC);
+  int item = openat(destination->folder, destination->name, O_PATH | O_NOFOLLOW | O_CLOEXEC);
   if (item < 0)
     return STEP_FAILED;
   step result = take_item(w, item, is_last ? "" : *next ? next : ".");
@@ -145,7 +146,7 @@ static step take_part(walk *w) {
 
 bool vxm_output_path_find(vxm_output_path *out, const char *path) {
   *out = (vxm_output_path){.folder = -1, .device = -1};
-  walk w = {.spot = out};
+  walk w = {.destination = out};
   bool good = set_rest(&w, path) &&
               (out->folder >= 0 || set_folder(out, open(".", O_PATH | O_DIRECTORY | O_CLOEXEC)));
   step result = good ? STEP_ON : STEP_FAILED;
@@ -158,10 +159,10 @@ bool vxm_output_path_find(vxm_output_path *out, const char *path) {
   return fail(reason);
 }
 
-void vxm_output_path_close(vxm_output_path *spot) {
-  if (spot->folder >= 0)
-    close(spot->folder);
-  if (spot->device >= 0)
-    close(spot->device);
-  spot->folder = spot->device = -1;
+void vxm_output_path_close(vxm_output_path *destination) {
+  if (destination->folder >= 0)
+    close(destination->folder);
+  if (destination->device >= 0)
+    close(destination->device);
+  destination->folder = destination->device = -1;
 }

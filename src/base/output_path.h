@@ -15,13 +15,13 @@ typedef struct vxm_output_path {
 } vxm_output_path;
 
 /**
- * Follows a path. A link stays a link: what it points to is the spot, also if nothing is there yet. A link in
- * a folder that everybody may write to is followed only if it belongs to this user or to the folder's owner,
- * whatever the kernel's own rule is set to: as root, a file in /tmp must not become one in /etc.
+ * Follows a path. A link stays a link: what it points to is the destination, also if nothing is there yet. A
+ * link in a folder that everybody may write to is followed only if it belongs to this user or to the folder's
+ * owner, whatever the kernel's own rule is set to: as root, a file in /tmp must not become one in /etc.
  *
  * @return false with errno set
  */
 bool vxm_output_path_find(vxm_output_path *out, const char *path);
-void vxm_output_path_close(vxm_output_path *spot);
+void vxm_output_path_close(vxm_output_path *destination);
 
 #endif

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-enum { VXM_NOTES_MAX = 16, VXM_NOTE_LENGTH = 320 };
+enum { VXM_WARNINGS_MAX = 16, VXM_WARNING_LENGTH = 320 };
 
 /**
  * Readers gather each kind of damage into one line ("line 7: ...; 12 such lines in all"), so a fixed number
@@ -17,7 +17,7 @@ enum { VXM_NOTES_MAX = 16, VXM_NOTE_LENGTH = 320 };
  */
 typedef struct vxm_warnings {
   int count;
-  char text[VXM_NOTES_MAX][VXM_NOTE_LENGTH];
+  char text[VXM_WARNINGS_MAX][VXM_WARNING_LENGTH];
 } vxm_warnings;
 
 void vxm_warn(vxm_warnings *warnings, const char *format, ...) VXM_PRINTF(2, 3);

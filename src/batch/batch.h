@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Many meshes, each in a process of its own. This room belongs to the program: it knows processes, journals
+ * Many meshes, each in a process of its own. This folder belongs to the program: it knows processes, journals
  * and folders, and nothing of options; what a piece of work is its caller says (cli/batch_job.c).
  */
 #ifndef VXM_BATCH_BATCH_H

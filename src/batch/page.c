@@ -59,12 +59,12 @@ static char *base64_of(const char *path) {
 
 /** A picture of what was made of an item, to be freed; NULL = none, as of a duplicate: it would be the same
  * picture once more. */
-static char *picture_of(const batch_item *item, const char *output, const batch_telling *telling) {
+static char *picture_of(const batch_item *item, const char *output, const batch_summary_hooks *hooks) {
   bool is_drawn = batch_is_done(item->status) && item->status != BATCH_DUPLICATE;
-  char *name = is_drawn ? telling->viewed(item, telling->payload) : NULL, *path = NULL, *text = NULL;
+  char *name = is_drawn ? hooks->viewed(item, hooks->payload) : NULL, *path = NULL, *text = NULL;
   char *picture = batch_plan_path(output, "picture.png");
   if (name && picture && asprintf(&path, "%s/%s", output, name) >= 0 &&
-      telling->draw(path, picture, telling->payload))
+      hooks->draw(path, picture, hooks->payload))
     text = base64_of(picture);
   if (picture)
     unlink(picture);
@@ -81,7 +81,7 @@ static void set_text(json_t *row, const char *key, const char *text) {
     json_object_set_new(row, key, batch_json_string(text));
 }
 
-static json_t *row_of(const batch_state *state, int64_t i, const batch_telling *telling) {
+static json_t *row_of(const batch_state *state, int64_t i, const batch_summary_hooks *hooks) {
   const batch_item *item = &state->manifest.items[i];
   const batch_end *end = &state->ends[i];
   json_t *row =
@@ -93,14 +93,14 @@ static json_t *row_of(const batch_state *state, int64_t i, const batch_telling *
   set_text(row, "split", item->split);
   set_text(row, "message", end->message);
   if (!batch_is_done(item->status) && item->status != BATCH_PENDING) {
-    char *command = telling->command_line(item, telling->payload);
+    char *command = hooks->command_line(item, hooks->payload);
     set_text(row, "command", command);
     free(command);
   }
   return row;
 }
 
-static json_t *rows_of(const batch_state *state, const char *output, const batch_telling *telling) {
+static json_t *rows_of(const batch_state *state, const char *output, const batch_summary_hooks *hooks) {
   int64_t count = state->manifest.count;
   int pictures = 0;
   ranked *order = malloc((size_t)(count + 1) * sizeof *order);
@@ -110,10 +110,9 @@ static json_t *rows_of(const batch_state *state, const char *output, const batch
   if (order)
     qsort(order, (size_t)count, sizeof *order, by_score);
   for (int64_t k = 0; rows && k < count && k < ROWS_MAX; k++) {
-    json_t *row = row_of(state, order[k].item, telling);
-    char *picture = pictures < telling->pictures
-                        ? picture_of(&state->manifest.items[order[k].item], output, telling)
-                        : NULL;
+    json_t *row = row_of(state, order[k].item, hooks);
+    char *picture =
+        pictures < hooks->pictures ? picture_of(&state->manifest.items[order[k].item], output, hooks) : NULL;
     pictures += picture != NULL;
     set_text(row, "picture", picture);
     free(picture);
@@ -143,8 +142,8 @@ static void put_page(FILE *file, const char *data) {
 }
 
 bool batch_page_write(const batch_state *state, const json_t *summary, const char *output,
-                      const batch_telling *telling, batch_error *error) {
-  json_t *data = json_pack("{s:O, s:o}", "summary", summary, "rows", rows_of(state, output, telling));
+                      const batch_summary_hooks *hooks, batch_error *error) {
+  json_t *data = json_pack("{s:O, s:o}", "summary", summary, "rows", rows_of(state, output, hooks));
   char *json = data ? json_dumps(data, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL, *text = NULL,
        *path = NULL;
   size_t size = 0;

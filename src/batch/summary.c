@@ -39,10 +39,10 @@ static void put_cell(FILE *file, const char *text, char end) {
   fputc(end, file);
 }
 
-static void put_failure(FILE *file, const batch_state *state, int64_t i, const batch_telling *telling) {
+static void put_failure(FILE *file, const batch_state *state, int64_t i, const batch_summary_hooks *hooks) {
   const batch_item *item = &state->manifest.items[i];
   const batch_end *end = &state->ends[i];
-  char *command = telling->command_line(item, telling->payload);
+  char *command = hooks->command_line(item, hooks->payload);
   put_cell(file, item->id, '\t');
   put_cell(file, batch_status_names[item->status], '\t');
   put_cell(file, end->stage, '\t');
@@ -51,7 +51,7 @@ static void put_failure(FILE *file, const batch_state *state, int64_t i, const b
   free(command);
 }
 
-static bool write_failures(const batch_state *state, const char *output, const batch_telling *telling,
+static bool write_failures(const batch_state *state, const char *output, const batch_summary_hooks *hooks,
                            batch_error *error) {
   char *text = NULL, *path = NULL;
   size_t size = 0;
@@ -61,7 +61,7 @@ static bool write_failures(const batch_state *state, const char *output, const b
   fputs("item\tstatus\tstage\tmessage\tcommand\n", file);
   for (int64_t i = 0; i < state->manifest.count; i++)
     if (!batch_is_done(state->manifest.items[i].status) && state->manifest.items[i].status != BATCH_PENDING)
-      put_failure(file, state, i, telling);
+      put_failure(file, state, i, hooks);
   bool good = fclose(file) == 0 && asprintf(&path, "%s/failures.tsv", output) >= 0
                   ? batch_write_file(path, text, size, error)
                   : batch_fail(error, "out of memory: free some");
@@ -83,12 +83,12 @@ static bool write_json(const json_t *summary, const char *output, batch_error *e
   return good;
 }
 
-bool batch_summary_write(const batch_state *state, const char *output, const batch_telling *telling,
+bool batch_summary_write(const batch_state *state, const char *output, const batch_summary_hooks *hooks,
                          batch_error *error) {
   json_t *summary = batch_summary_json(state);
   bool good = summary ? true : batch_fail(error, "out of memory: free some");
-  good = good && batch_page_write(state, summary, output, telling, error) &&
-         write_failures(state, output, telling, error) && write_json(summary, output, error);
+  good = good && batch_page_write(state, summary, output, hooks, error) &&
+         write_failures(state, output, hooks, error) && write_json(summary, output, error);
   json_decref(summary);
   return good;
 }

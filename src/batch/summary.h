@@ -5,7 +5,8 @@
 
 #include "batch/state.h"
 
-typedef struct batch_telling {
+/** What the summary needs of its caller, who knows the commands. */
+typedef struct batch_summary_hooks {
   int pictures; /**< how many at most */
   /** The command that repeats an item alone, to be freed. */
   char *(*command_line)(const batch_item *item, void *payload);
@@ -14,15 +15,15 @@ typedef struct batch_telling {
   /** Draws a file as a small PNG; false if that cannot be. */
   bool (*draw)(const char *path, const char *picture, void *payload);
   void *payload;
-} batch_telling;
+} batch_summary_hooks;
 
 /** Counts and sums over all items, to be released; NULL without memory. */
 json_t *batch_summary_json(const batch_state *state);
 /** Writes all three, from the state of all shards. */
-bool batch_summary_write(const batch_state *state, const char *output, const batch_telling *telling,
+bool batch_summary_write(const batch_state *state, const char *output, const batch_summary_hooks *hooks,
                          batch_error *error);
 /** The page alone. */
 bool batch_page_write(const batch_state *state, const json_t *summary, const char *output,
-                      const batch_telling *telling, batch_error *error);
+                      const batch_summary_hooks *hooks, batch_error *error);
 
 #endif

@@ -49,7 +49,7 @@ bool batch_zygote_start(batch_zygote *out, batch_work *work, void *payload, batc
 bool batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
                        const batch_limits *limits) {
   size_t length = strlen(request);
-  batch_request head = {ticket, *limits, length};
+  batch_zygote_request head = {ticket, *limits, length};
   struct iovec parts[2] = {{&head, sizeof head}, {(void *)(uintptr_t)request, length}};
   struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
   batch_descriptor_room room;
@@ -62,7 +62,7 @@ bool batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *reques
 }
 
 int batch_zygote_receive(batch_zygote *zygote, batch_ending *out, char buffer[BATCH_ENDING_BYTES]) {
-  batch_reply reply;
+  batch_zygote_reply reply;
   struct iovec parts[2] = {{&reply, sizeof reply}, {buffer, BATCH_ENDING_BYTES - 1}};
   struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
   ssize_t got = recvmsg(zygote->channel, &message, MSG_DONTWAIT);

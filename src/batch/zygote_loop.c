@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The zygote: forks, waits, keeps the time, and tells how each child ended. */
 #include "batch/zygote_loop.h"
-#include "batch/cage.h"
 #include "batch/descriptor.h"
+#include "batch/pid_namespace.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -34,7 +34,7 @@ typedef struct child {
   uint64_t ticket;
   double started_ms, deadline_ms; /**< deadline 0 = none */
   batch_reason reason;
-  int status; /**< of batch_cage_fork */
+  int status; /**< of batch_namespace_fork */
   stream message, result;
 } child;
 
@@ -42,11 +42,11 @@ typedef struct zygote {
   int channel, signals;
   batch_work *work;
   void *payload;
-  batch_cage cage;
+  bool has_namespaces; /**< each child gets one for its PIDs */
   child children[CHILDREN_MAX];
   int count;
   bool has_strays; /**< processes that children left behind are being ended */
-  char request[sizeof(batch_request) + BATCH_REQUEST_MAX + 1];
+  char request[sizeof(batch_zygote_request) + BATCH_REQUEST_MAX + 1];
 } zygote;
 
 /* ---- Streams ---- */
@@ -93,7 +93,7 @@ static void read_stream(stream *s) {
 static void send_reply(const zygote *z, const batch_ending *ending, const stream *message,
                        const stream *result) {
   static const char zero[1];
-  batch_reply reply = {
+  batch_zygote_reply reply = {
       .ending = *ending, .message_bytes = message->size + 1, .result_bytes = result->size + 1};
   struct iovec parts[5] = {{&reply, sizeof reply},
                            {message->text, message->size},
@@ -121,7 +121,7 @@ static double milliseconds(struct timeval t) {
 static void collect(zygote *z, int index, int status, const struct rusage *usage) {
   child *c = &z->children[index];
   kill(-c->id, SIGKILL);
-  batch_cage_status(c->status, &status);
+  batch_namespace_status(c->status, &status);
   read_stream(&c->message);
   read_stream(&c->result);
   if (c->result.dropped > 0 && c->reason == BATCH_REASON_ENDED)
@@ -154,7 +154,7 @@ static void reap(zygote *z) {
   while ((id = wait4(-1, &status, WNOHANG, &usage)) > 0) {
     int index = find_child(z, id);
     if (index >= 0) {
-      z->has_strays |= !z->cage.has_spaces; /* it may have left some: they are ours now */
+      z->has_strays |= !z->has_namespaces; /* it may have left some: they are ours now */
       collect(z, index, status, &usage);
     }
   }
@@ -182,8 +182,8 @@ static void refuse(const zygote *z, uint64_t ticket) {
   send_reply(z, &ending, &(stream){.descriptor = -1}, &(stream){.descriptor = -1});
 }
 
-_Noreturn static void be_child(zygote *z, const batch_request *head, const char *text, int input, int message,
-                               int result) {
+_Noreturn static void be_child(zygote *z, const batch_zygote_request *head, const char *text, int input,
+                               int message, int result) {
   close(z->channel);
   close(z->signals);
   for (int c = 0; c < z->count; c++) {
@@ -197,7 +197,7 @@ _Noreturn static void be_child(zygote *z, const batch_request *head, const char 
   _exit(z->work(text, result, z->payload));
 }
 
-static void start_child(zygote *z, const batch_request *head, const char *text, int input) {
+static void start_child(zygote *z, const batch_zygote_request *head, const char *text, int input) {
   child c = {.ticket = head->ticket,
              .started_ms = batch_clock_ms(),
              .status = -1,
@@ -207,8 +207,8 @@ static void start_child(zygote *z, const batch_request *head, const char *text, 
   bool good = z->count < CHILDREN_MAX && open_stream(&c.message, BATCH_MESSAGE_MAX, &message) &&
               open_stream(&c.result, BATCH_RESULT_MAX, &result);
   pid_t own = getpid();
-  c.id = good ? batch_cage_fork(&z->cage, &c.status) : -1;
-  if (c.id == 0 && !z->cage.has_spaces && !batch_child_bind(own))
+  c.id = good ? batch_namespace_fork(z->has_namespaces, &c.status) : -1;
+  if (c.id == 0 && !z->has_namespaces && !batch_child_bind(own))
     _exit(1);
   if (c.id == 0)
     be_child(z, head, text, input, message, result);
@@ -230,7 +230,7 @@ static void start_child(zygote *z, const batch_request *head, const char *text, 
 
 /** False when the other end is closed. */
 static bool take_request(zygote *z) {
-  batch_request head;
+  batch_zygote_request head;
   batch_descriptor_room room;
   struct iovec part = {z->request, sizeof z->request - 1};
   struct msghdr message = {
@@ -327,7 +327,8 @@ void batch_zygote_loop(int channel, batch_work *work, void *payload) {
   sigaddset(&child_ended, SIGCHLD);
   setpgid(0, 0);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
-  z = (zygote){.channel = channel, .work = work, .payload = payload, .cage = batch_cage_open()};
+  z = (zygote){
+      .channel = channel, .work = work, .payload = payload, .has_namespaces = batch_pid_namespaces_open()};
   z.signals = signalfd(-1, &child_ended, SFD_NONBLOCK | SFD_CLOEXEC);
   if (z.signals < 0)
     return;

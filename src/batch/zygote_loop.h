@@ -6,17 +6,17 @@
 #include "batch/zygote.h"
 
 /** Goes before the text of a request; its standard input goes along as a descriptor. */
-typedef struct batch_request {
+typedef struct batch_zygote_request {
   uint64_t ticket;
   batch_limits limits;
   size_t bytes;
-} batch_request;
+} batch_zygote_request;
 
 /** Goes before message and result, each with its zero. */
-typedef struct batch_reply {
+typedef struct batch_zygote_reply {
   batch_ending ending;
   size_t message_bytes, result_bytes;
-} batch_reply;
+} batch_zygote_reply;
 
 /** Forks children until the other end of the channel is closed; then ends them all. */
 void batch_zygote_loop(int channel, batch_work *work, void *payload);

@@ -7,10 +7,10 @@
 #include <string.h>
 
 enum {
-  EDGE_BITS = 19,       /**< of an edge of the tool, in lattice steps; with the way it stays below
+  EDGE_BITS = 19,       /**< of an edge of the tool, in lattice steps; with the path it stays below
                            VXM_CONVEX_BITS */
   BITS_MIN = 8,         /**< of a voxel, in lattice steps */
-  PIECE_VOXELS = 2,     /**< of a straight way, unless the tool's faces are larger */
+  PIECE_VOXELS = 2,     /**< of a straight path, unless the tool's faces are larger */
   STAMP_WORDS = 1 << 18 /**< of a window in which the tool is put into the stock */
 };
 
@@ -70,7 +70,7 @@ static vxm_status measure(vxm_carver *carver, double *longest, double *mean, vxm
   return VXM_OK;
 }
 
-/** Chooses a lattice on which faces and ways fit what is computed with. */
+/** Chooses a lattice on which faces and paths fit what is computed with. */
 static vxm_status choose_lattice(vxm_carver *carver, vxm_error *error) {
   double longest = 0, mean = 0;
   vxm_status status = measure(carver, &longest, &mean, error);

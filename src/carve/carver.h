@@ -22,7 +22,7 @@ struct vxm_carver {
   uint32_t (*triangles)[3]; /**< each with its corners in the order of their positions */
   size_t triangle_count, point_count;
   double reach;       /**< how far from its origin the tool reaches, voxels */
-  int64_t piece;      /**< a straight way is cut piece by piece, each at most so many steps long */
+  int64_t piece;      /**< a straight path is cut piece by piece, each at most so many steps long */
   double (*moved)[3]; /**< the points in a window */
   uint64_t *words;    /**< of that window */
   size_t word_room;

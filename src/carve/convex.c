@@ -83,24 +83,24 @@ static void cut(vxm_stock *stock, const body *b, const vxm_voxel_box *box) {
 }
 
 void vxm_convex_cut_prism(vxm_stock *stock, const vxm_lattice *lattice, const vxm_point corners[3],
-                          const int64_t way[3], const vxm_voxel_box *box) {
+                          const int64_t motion[3], const vxm_voxel_box *box) {
   body b = {.count = 0};
   int64_t edges[3][3], normal[3], end[3];
   for (int e = 0; e < 3; e++)
     subtract(edges[e], corners[(e + 1) % 3].at, corners[e].at);
   cross(normal, edges[0], edges[1]);
-  int64_t height = dot(normal, way);
+  int64_t height = dot(normal, motion);
   if (height == 0)
     return;
   const int sign = height > 0 ? 1 : -1;
   for (int a = 0; a < 3; a++)
-    end[a] = corners[0].at[a] + way[a];
+    end[a] = corners[0].at[a] + motion[a];
   add_plane(&b, lattice, normal, sign, corners[0].at, box);
   add_plane(&b, lattice, normal, -sign, end, box);
   for (int e = 0; e < 3;
-       e++) { /* seen against the way, inside is to the left of each edge, or to the right */
+       e++) { /* seen against the motion, inside is to the left of each edge, or to the right */
     int64_t side[3];
-    cross(side, way, edges[e]);
+    cross(side, motion, edges[e]);
     add_plane(&b, lattice, side, sign, corners[e].at, box);
   }
   if (!b.is_flat)

@@ -38,9 +38,9 @@ static inline bool vxm_voxel_box_is_empty(const vxm_voxel_box *box) {
   return (box->first[0] > box->last[0]) | (box->first[1] > box->last[1]) | (box->first[2] > box->last[2]);
 }
 
-/** Cuts what a triangle sweeps on a straight way. @param box that has all of it */
+/** Cuts what a triangle sweeps on a straight path. @param box that has all of it */
 void vxm_convex_cut_prism(vxm_stock *stock, const vxm_lattice *lattice, const vxm_point corners[3],
-                          const int64_t way[3], const vxm_voxel_box *box);
+                          const int64_t motion[3], const vxm_voxel_box *box);
 /** Cuts a tetrahedron. @param box that has all of it */
 void vxm_convex_cut_tetrahedron(vxm_stock *stock, const vxm_lattice *lattice, const vxm_point corners[4],
                                 const vxm_voxel_box *box);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "carve/stock.h"
 #include "base/hash.h"
-#include "grid/octree_cut.h"
+#include "grid/octree_crop.h"
 #include "grid/octree_pieces.h"
 
 enum { TABLE_MIN = 64, BRICK = 4 };
@@ -80,7 +80,7 @@ static vxm_status make_tile(vxm_stock *stock, const int64_t at[3], vxm_error *er
       begin[a] = VXM_STOCK_TILE * at[a];
       end[a] = vxm_min(begin[a] + VXM_STOCK_TILE, stock->sparse->space.dims[a]);
     }
-    status = vxm_octree_cut(&made.bits, stock->sparse, begin, end, error);
+    status = vxm_octree_crop(&made.bits, stock->sparse, begin, end, error);
     if (status != VXM_OK)
       return status;
     *tile = made;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * A tool on its way. Where it moves without turning each of its faces sweeps a prism; what the tool has been
- * in before is cut already, and whatever it newly comes to one of its faces has to pass. Where it turns, the
- * way is halved until no point moves by more than half a voxel through the turn; in each part the corners of
- * faces go straight ahead, and what a face sweeps is three tetrahedra.
+ * A tool along its path. Where it moves without turning each of its faces sweeps a prism; what the tool has
+ * been in before is cut already, and whatever it newly comes to one of its faces has to pass. Where it turns,
+ * the step is halved until no point moves by more than half a voxel through the turn; in each part the
+ * corners of faces go straight ahead, and what a face sweeps is three tetrahedra.
  */
 #include "carve/carver.h"
 
@@ -68,9 +68,9 @@ static void sweep_piece(vxm_carver *carver, const int64_t from[3], const int64_t
   const vxm_point *points = carver->from.at;
   if (!meets_stock(carver, &carver->from, from, to))
     return;
-  int64_t way[3], back[3], ahead[3];
+  int64_t motion[3], back[3], ahead[3];
   for (int a = 0; a < 3; a++) {
-    way[a] = to[a] - from[a];
+    motion[a] = to[a] - from[a];
     back[a] = vxm_min(from[a], to[a]);
     ahead[a] = vxm_max(from[a], to[a]);
   }
@@ -91,35 +91,35 @@ static void sweep_piece(vxm_carver *carver, const int64_t from[3], const int64_t
       corners[1].at[a] = q[a] + from[a];
       corners[2].at[a] = r[a] + from[a];
     }
-    vxm_convex_cut_prism(&carver->stock, &carver->lattice, corners, way, &box);
+    vxm_convex_cut_prism(&carver->stock, &carver->lattice, corners, motion, &box);
   }
 }
 
-/** The pieces of a straight way that can meet the stock are among these; none if first > last. */
+/** The pieces of a straight path that can meet the stock are among these; none if first > last. */
 static void find_pieces(const vxm_carver *carver, const int64_t from[3], const int64_t to[3], int64_t pieces,
                         int64_t *first, int64_t *last) {
   double begin = 0, end = 1;
   for (int a = 0; a < 3; a++) { /* the tool meets the stock from when its front has come to it ... */
-    double way = (double)(to[a] - from[a]),
+    double motion = (double)(to[a] - from[a]),
            dim = (double)(carver->lattice.space.dims[a] * carver->lattice.unit),
            low = (double)(carver->from.low[a] + from[a]), high = (double)(carver->from.high[a] + from[a]);
-    if (way == 0)
+    if (motion == 0)
       continue;
-    begin = fmax(begin, way > 0 ? -high / way : (dim - low) / way);
-    end = fmin(end, way > 0 ? (dim - low) / way : -high / way); /* ... until its back has left it */
+    begin = fmax(begin, motion > 0 ? -high / motion : (dim - low) / motion);
+    end = fmin(end, motion > 0 ? (dim - low) / motion : -high / motion); /* ... until its back has left it */
   }
   *first = (int64_t)fmax(1, floor(fmin(begin, 1) * (double)pieces) - 1);
   *last = (int64_t)fmin((double)pieces, ceil(fmax(end, 0) * (double)pieces) + 1);
 }
 
-/** After so many of the pieces of a way. */
+/** After so many of the pieces of a path. */
 static void place_after(int64_t out[3], const int64_t from[3], const int64_t to[3], int64_t piece,
                         int64_t pieces) {
   for (int a = 0; a < 3; a++)
     out[a] = from[a] + (int64_t)((vxm_int128)(to[a] - from[a]) * piece / pieces);
 }
 
-/** A long way in pieces, as the boxes of prisms askew have far more voxels than they. */
+/** A long path in pieces, as the boxes of prisms askew have far more voxels than they. */
 static void sweep_straight(vxm_carver *carver, const int64_t from[3], const int64_t to[3]) {
   int64_t longest = 0, first, last, at[3], next[3];
   for (int a = 0; a < 3; a++)

@@ -32,7 +32,7 @@ bool batch_words_split(batch_words *words, const char *text, batch_error *error)
 char *batch_words_text(char *const *words, int count);
 void batch_words_free(batch_words *words);
 
-typedef struct batch_wish {
+typedef struct batch_request {
   const char *output, *to, *products[BATCH_PRODUCTS]; /**< products: the options of each, NULL = not wanted */
   batch_words grid_options;                           /**< those given to the batch itself */
   batch_words export_options;
@@ -43,37 +43,48 @@ typedef struct batch_wish {
   double time_limit;
   uint64_t file_limit;
   bool retry[BATCH_STATUSES];
-} batch_wish;
+} batch_request;
 
 extern const cli_option batch_options[];
 /** Options of voxelize that are about one mesh. */
 extern const char *const batch_refused[];
 
 /** Reads the command line; CLI_STOP if it is at fault, or all has been said. */
-int batch_read_arguments(cli_run *cli, batch_wish *out);
+int batch_read_arguments(cli_run *cli, batch_request *out);
 
 /* ---- batch_job.c: what is made of a mesh, and making it, in a child ---- */
 
 /** What makes jobs, and does them. */
 typedef struct batch_maker {
-  const batch_wish *wish;
+  const batch_request *given;
   const char *output; /**< the folder that is written to */
 } batch_maker;
 
 json_t *batch_make_job(const batch_item *item, uint64_t memory, void *maker, batch_error *error);
 int batch_do_job(const char *request, int result, void *maker);
 /** What decides about the bytes of outputs, for the plan. */
-json_t *batch_make_settings(const batch_wish *wish);
+json_t *batch_make_settings(const batch_request *given);
 /** "voxmend voxelize a.off -o a.binvox ...": repeats a mesh alone, writing to the present folder; to be
  * freed. */
 char *batch_command_line(const batch_item *item, const batch_maker *maker);
+
+/* ---- batch_try.c: commands in a child ---- */
+
 /**
- * (batch_telling.c) Tries whether the options can be understood, without a mesh; in a child, as they are
- * those of other commands. CLI_STOP after a line.
+ * Runs a command in a child.
+ *
+ * @param words   ended by NULL
+ * @param message descriptor that becomes its standard error; -1 = none
+ * @return its exit status; -1 if it crashed or took too long
+ */
+int batch_run_command(char **words, int message, unsigned seconds);
+/**
+ * Tries whether the options can be understood, without a mesh; in a child, as they are those of other
+ * commands. CLI_STOP after a line.
  */
 int batch_try_options(cli_run *cli, const batch_maker *maker);
 
-/* ---- batch_telling.c ---- */
+/* ---- batch_summary.c ---- */
 
 /**
  * Writes summary.json, failures.tsv and index.html, once all shards have come to their end.
@@ -91,6 +102,6 @@ int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *
 
 int batch_status_command(cli_run *cli, const char *folder);
 int batch_verify_command(cli_run *cli, const char *folder);
-int batch_export_command(cli_run *cli, const char *folder, const batch_wish *wish);
+int batch_export_command(cli_run *cli, const char *folder, const batch_request *given);
 
 #endif

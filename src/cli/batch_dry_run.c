@@ -70,17 +70,17 @@ int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *
     free(folder);
     return status;
   }
-  keep_sample(manifest, maker->wish->sample);
+  keep_sample(manifest, maker->given->sample);
   batch_settings sampled = *settings;
   sampled.output = maker->output = folder;
   sampled.shard = 0;
   sampled.shards = 1;
-  json_t *plan = batch_make_settings(maker->wish), *report = NULL;
+  json_t *plan = batch_make_settings(maker->given), *report = NULL;
   bool good = batch_plan_freeze(manifest, plan, &sampled, &error);
   json_decref(plan);
   batch_outcome outcome = good ? batch_run(&tally, manifest, &sampled, &error) : BATCH_BROKEN;
   if (outcome == BATCH_COMPLETE && batch_state_read(&state, folder, &error)) {
-    report = estimate(cli, &state, &tally, all, maker->wish->jobs);
+    report = estimate(cli, &state, &tally, all, maker->given->jobs);
     batch_state_free(&state);
   }
   batch_folder_remove(folder);

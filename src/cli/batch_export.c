@@ -57,28 +57,28 @@ static bool end(pid_t id, FILE *channel, json_t **report) {
 
 /** Tars and arrays, and tables of Parquet, are made by the Python package, with the libraries that are at
  * home there. */
-static int export_by_python(cli_run *cli, const char *folder, const batch_wish *wish, json_t **report) {
+static int export_by_python(cli_run *cli, const char *folder, const batch_request *given, json_t **report) {
   const char *python = getenv("PYTHON");
   if (!python || !*python)
     python = "python3";
   batch_words words = {NULL, 0, 0};
   bool good = batch_words_add(&words, "%s", python) && batch_words_add(&words, "-c") &&
               batch_words_add(&words, "%s", program) && batch_words_add(&words, "export") &&
-              batch_words_add(&words, "--to=%s", wish->to) &&
-              batch_words_add(&words, "--output=%s", wish->output);
-  for (int w = 0; good && w < wish->export_options.count; w++)
-    good = batch_words_add(&words, "%s", wish->export_options.words[w]);
+              batch_words_add(&words, "--to=%s", given->to) &&
+              batch_words_add(&words, "--output=%s", given->output);
+  for (int w = 0; good && w < given->export_options.count; w++)
+    good = batch_words_add(&words, "%s", given->export_options.words[w]);
   good = good && batch_words_add(&words, "--") && batch_words_add(&words, "%s", folder);
   FILE *channel = NULL;
   pid_t id = 0;
   int failure = good ? start(&id, &channel, words.words) : ENOMEM;
   batch_words_free(&words);
   if (failure != 0)
-    return cli_fail_text(cli, "%s: cannot start it for --to %s: %s", python, wish->to, strerror(failure));
+    return cli_fail_text(cli, "%s: cannot start it for --to %s: %s", python, given->to, strerror(failure));
   if (!end(id, channel, report))
     return CLI_FAILED; /* it has said why */
   return *report ? CLI_DONE
-                 : cli_fail_text(cli, "%s: its package voxmend told nothing of %s", python, wish->output);
+                 : cli_fail_text(cli, "%s: its package voxmend told nothing of %s", python, given->output);
 }
 
 static int export_sqlite(cli_run *cli, const char *folder, const char *path, json_t **report) {
@@ -111,24 +111,24 @@ static int check_options(cli_run *cli, const batch_words *options, int kind) {
   return CLI_END;
 }
 
-int batch_export_command(cli_run *cli, const char *folder, const batch_wish *wish) {
+int batch_export_command(cli_run *cli, const char *folder, const batch_request *given) {
   json_t *report = NULL;
   int kind = SQLITE;
-  if (!wish->to || !wish->output)
+  if (!given->to || !given->output)
     return cli_usage(cli, "an export needs --to sqlite|parquet|webdataset|zarr and -o PATH"), cli->status;
-  if (cli_choose(cli, &kind, "to", wish->to, kinds) == CLI_STOP ||
-      check_options(cli, &wish->export_options, kind) == CLI_STOP)
+  if (cli_choose(cli, &kind, "to", given->to, kinds) == CLI_STOP ||
+      check_options(cli, &given->export_options, kind) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  int status = kind == SQLITE ? export_sqlite(cli, folder, wish->output, &report)
-                              : export_by_python(cli, folder, wish, &report);
+  int status = kind == SQLITE ? export_sqlite(cli, folder, given->output, &report)
+                              : export_by_python(cli, folder, given, &report);
   if (status != CLI_DONE) {
     json_decref(report);
     return status;
   }
   if (cli_summary(cli))
-    cli_row(cli, "output", "%s (%s): %" JSON_INTEGER_FORMAT " meshes", wish->output, wish->to,
+    cli_row(cli, "output", "%s (%s): %" JSON_INTEGER_FORMAT " meshes", given->output, given->to,
             json_integer_value(json_object_get(report, "meshes")));
   return cli_finish(cli, report);
 }

@@ -26,14 +26,14 @@ static const char *format_in(const char *options, const char *usual, char text[1
 
 /** Name of a product below the folder of outputs, to be freed. A mesh that stands alone needs no telling
  * word. */
-static char *product_name(const batch_wish *wish, batch_product product, const batch_item *item) {
+static char *product_name(const batch_request *given, batch_product product, const batch_item *item) {
   char format[16], *name = NULL;
-  const char *options = wish->products[product];
-  bool is_alone = wish->no_grid && !(wish->products[BATCH_REPAIRED] && wish->products[BATCH_REMESHED]);
+  const char *options = given->products[product];
+  bool is_alone = given->no_grid && !(given->products[BATCH_REPAIRED] && given->products[BATCH_REMESHED]);
   int got = -1;
   switch (product) {
   case BATCH_GRID:
-    got = asprintf(&name, "%s.%s", item->output, wish->format);
+    got = asprintf(&name, "%s.%s", item->output, given->format);
     break;
   case BATCH_REPAIRED:
   case BATCH_REMESHED:
@@ -52,8 +52,8 @@ static char *product_name(const batch_wish *wish, batch_product product, const b
   return got < 0 ? NULL : name;
 }
 
-static bool is_wanted(const batch_wish *wish, batch_product product) {
-  return product == BATCH_GRID ? !wish->no_grid : wish->products[product] != NULL;
+static bool is_wanted(const batch_request *given, batch_product product) {
+  return product == BATCH_GRID ? !given->no_grid : given->products[product] != NULL;
 }
 
 /** Whether a grid of this format can be looked at; else the mesh is. */
@@ -79,27 +79,27 @@ static bool check_own(const batch_words *words, int first, batch_error *error) {
 }
 
 /** The options of a product, and those of the item behind them. */
-static bool add_options(batch_words *words, const batch_wish *wish, batch_product product,
+static bool add_options(batch_words *words, const batch_request *given, batch_product product,
                         const batch_item *item, batch_error *error) {
   if (product != BATCH_GRID)
-    return batch_words_split(words, wish->products[product], error);
-  for (int w = 0; w < wish->grid_options.count; w++)
-    if (!batch_words_add(words, "%s", wish->grid_options.words[w]))
+    return batch_words_split(words, given->products[product], error);
+  for (int w = 0; w < given->grid_options.count; w++)
+    if (!batch_words_add(words, "%s", given->grid_options.words[w]))
       return batch_fail(error, "out of memory: free some");
   int first = words->count;
   return !item->options || (batch_words_split(words, item->options, error) && check_own(words, first, error));
 }
 
 /** "voxelize OPTIONS -o NAME [--] INPUT" */
-static bool add_command(batch_words *words, const batch_wish *wish, batch_product product,
+static bool add_command(batch_words *words, const batch_request *given, batch_product product,
                         const batch_item *item, const char *input, const char *output, batch_error *error) {
   if (!batch_words_add(words, "%s", product_commands[product]))
     return batch_fail(error, "out of memory: free some");
-  if (!add_options(words, wish, product, item, error))
+  if (!add_options(words, given, product, item, error))
     return false;
   bool good = batch_words_add(words, "-o") && batch_words_add(words, "%s", output);
   if (product == BATCH_GRID)
-    good = good && batch_words_add(words, "--format=%s", wish->format);
+    good = good && batch_words_add(words, "--format=%s", given->format);
   if (input[0] == '-' && input[1])
     good = good && batch_words_add(words, "--");
   good = good && batch_words_add(words, "%s", input);
@@ -107,9 +107,10 @@ static bool add_command(batch_words *words, const batch_wish *wish, batch_produc
 }
 
 /** Options of a child, which is one of many. */
-static bool add_limits(batch_words *words, const batch_wish *wish, uint64_t memory, batch_product product) {
+static bool add_limits(batch_words *words, const batch_request *given, uint64_t memory,
+                       batch_product product) {
   bool good = batch_words_add(words, "--quiet") && batch_words_add(words, "--progress=never") &&
-              batch_words_add(words, "--threads=%" PRId64, wish->threads);
+              batch_words_add(words, "--threads=%" PRId64, given->threads);
   if (memory > 0)
     good = good && batch_words_add(words, "--memlimit=%" PRIu64, memory);
   if (product != BATCH_PICTURE) /* what is left of a run that was ended */
@@ -127,21 +128,21 @@ static json_t *words_json(const batch_words *words) {
 /** Adds a command and its output to a job. */
 static bool add_product(json_t *job, const batch_maker *maker, batch_product product, const batch_item *item,
                         uint64_t memory, batch_error *error) {
-  const batch_wish *wish = maker->wish;
+  const batch_request *given = maker->given;
   batch_words words = {0};
-  char *name = product_name(wish, product, item), *path = NULL, *grid = NULL, *grid_path = NULL;
+  char *name = product_name(given, product, item), *path = NULL, *grid = NULL, *grid_path = NULL;
   bool good = name && asprintf(&path, "%s/%s", maker->output, name) >= 0;
   const char *input = item->member ? "-" : item->path;
-  if (good && product == BATCH_PICTURE && !wish->no_grid && can_be_viewed(wish->format)) {
-    grid = product_name(wish, BATCH_GRID, item);
+  if (good && product == BATCH_PICTURE && !given->no_grid && can_be_viewed(given->format)) {
+    grid = product_name(given, BATCH_GRID, item);
     good = grid && asprintf(&grid_path, "%s/%s", maker->output, grid) >= 0;
     input = grid_path;
   }
-  good = good ? add_command(&words, wish, product, item, input, path, error)
+  good = good ? add_command(&words, given, product, item, input, path, error)
               : batch_fail(error, "out of memory: free some");
   /* limits first: what the user says comes behind, and is heard */
   batch_words all = {0};
-  good = good && batch_words_add(&all, "%s", words.words[0]) && add_limits(&all, wish, memory, product);
+  good = good && batch_words_add(&all, "%s", words.words[0]) && add_limits(&all, given, memory, product);
   for (int w = 1; good && w < words.count; w++)
     good = batch_words_add(&all, "%s", words.words[w]);
   if (good) {
@@ -166,9 +167,9 @@ json_t *batch_make_job(const batch_item *item, uint64_t memory, void *payload, b
     json_object_set_new(job, "member", cli_json_text(item->member));
   bool good = job != NULL;
   for (int p = 0; good && p < BATCH_PRODUCTS; p++)
-    if (is_wanted(maker->wish, (batch_product)p))
+    if (is_wanted(maker->given, (batch_product)p))
       good = add_product(job, maker, (batch_product)p, item, memory, error);
-  if (good && maker->wish->reports) {
+  if (good && maker->given->reports) {
     char *name = NULL;
     good = asprintf(&name, "%s.report.json", item->output) >= 0;
     if (good) {
@@ -183,19 +184,19 @@ json_t *batch_make_job(const batch_item *item, uint64_t memory, void *payload, b
   return NULL;
 }
 
-json_t *batch_make_settings(const batch_wish *wish) {
+json_t *batch_make_settings(const batch_request *given) {
   json_t *settings = json_object();
   for (int p = 0; p < BATCH_PRODUCTS; p++) {
     char *text =
-        p == BATCH_GRID ? batch_words_text(wish->grid_options.words, wish->grid_options.count) : NULL;
-    if (is_wanted(wish, (batch_product)p))
+        p == BATCH_GRID ? batch_words_text(given->grid_options.words, given->grid_options.count) : NULL;
+    if (is_wanted(given, (batch_product)p))
       json_object_set_new(settings, product_commands[p],
-                          cli_json_text(p == BATCH_GRID ? (text ? text : "") : wish->products[p]));
+                          cli_json_text(p == BATCH_GRID ? (text ? text : "") : given->products[p]));
     free(text);
   }
-  if (!wish->no_grid)
-    json_object_set_new(settings, "format", cli_json_text(wish->format));
-  json_object_set_new(settings, "reports", json_string(wish->reports ? "yes" : "no"));
+  if (!given->no_grid)
+    json_object_set_new(settings, "format", cli_json_text(given->format));
+  json_object_set_new(settings, "reports", json_string(given->reports ? "yes" : "no"));
   return settings;
 }
 
@@ -206,18 +207,18 @@ static const char *unpacker_of(const char *archive) {
 }
 
 char *batch_command_line(const batch_item *item, const batch_maker *maker) {
-  const batch_wish *wish = maker->wish;
-  batch_product product = is_wanted(wish, BATCH_GRID) ? BATCH_GRID : BATCH_REPAIRED;
+  const batch_request *given = maker->given;
+  batch_product product = is_wanted(given, BATCH_GRID) ? BATCH_GRID : BATCH_REPAIRED;
   if (item->is_misnamed) /* nothing was run, and what a journal has of the name is another one */
     return NULL;
-  while (!is_wanted(wish, product) && product + 1 < BATCH_PRODUCTS)
+  while (!is_wanted(given, product) && product + 1 < BATCH_PRODUCTS)
     product++;
   batch_words words = {0}, source = {0};
   batch_error error;
-  char *name = product_name(wish, product, item), *line = NULL, *first = NULL, *text = NULL;
+  char *name = product_name(given, product, item), *line = NULL, *first = NULL, *text = NULL;
   const char *slash = name ? strrchr(name, '/') : NULL;
   if (name && batch_words_add(&words, "voxmend") &&
-      add_command(&words, wish, product, item, item->member ? "-" : item->path, slash ? slash + 1 : name,
+      add_command(&words, given, product, item, item->member ? "-" : item->path, slash ? slash + 1 : name,
                   &error))
     text = batch_words_text(words.words, words.count);
   if (text && item->member && batch_words_add(&source, "%s", item->path) &&

@@ -80,7 +80,7 @@ const cli_option batch_options[] = {
 /* ---- Values ---- */
 
 /** "timeout,oom", "all" */
-static int read_retry(cli_run *cli, batch_wish *out, const char *value) {
+static int read_retry(cli_run *cli, batch_request *out, const char *value) {
   char list[256];
   if (strlen(value) >= sizeof list)
     return cli_usage(cli, "--retry '%s' is too long", value);
@@ -113,7 +113,7 @@ static const char *from_variable(const char *word, size_t length) {
   return NULL;
 }
 
-static int read_shard(cli_run *cli, batch_wish *out, const char *value) {
+static int read_shard(cli_run *cli, batch_request *out, const char *value) {
   const char *slash = strchr(value, '/');
   char number[32] = "";
   size_t length = slash ? (size_t)(slash - value) : 0;
@@ -150,7 +150,7 @@ static const cli_option *option_of(int key, const cli_option *options) {
 }
 
 /** An option of an export is handed on to what writes it, sizes as numbers. */
-static int take_export_option(cli_run *cli, batch_wish *out, int key, const char *value) {
+static int take_export_option(cli_run *cli, batch_request *out, int key, const char *value) {
   const cli_option *option = option_of(key, batch_options);
   static const char *const contents[] = {"bits", "files", NULL}, *const formats[] = {"2", "3", NULL};
   char number[24];
@@ -174,7 +174,7 @@ static int take_export_option(cli_run *cli, batch_wish *out, int key, const char
 }
 
 /** An option of voxelize is handed on as it is. */
-static int take_grid_option(cli_run *cli, batch_wish *out, int key, const char *value) {
+static int take_grid_option(cli_run *cli, batch_request *out, int key, const char *value) {
   const cli_option *option = option_of(key, voxelize_options);
   if (!option->name)
     return cli_usage(cli, "an option is not known");
@@ -198,7 +198,7 @@ static int read_format(cli_run *cli, const char *value) {
                          cli_list((char[CLI_LIST_MAX]){""}, formats.name));
 }
 
-static int read_option(cli_run *cli, batch_wish *out, int key, const char *value) {
+static int read_option(cli_run *cli, batch_request *out, int key, const char *value) {
   if (key > KEY_TO && key <= KEY_ZARR_FORMAT)
     return take_export_option(cli, out, key, value);
   if (key != 'o' && key != KEY_TO) {
@@ -282,7 +282,7 @@ static bool hand_on_reading(const cli_run *cli, batch_words *words) {
   return good;
 }
 
-int batch_read_arguments(cli_run *cli, batch_wish *out) {
+int batch_read_arguments(cli_run *cli, batch_request *out) {
   const char *value;
   int key;
   while ((key = cli_next_option(cli, &value)) != CLI_END)

@@ -32,7 +32,7 @@ typedef struct bench_plan {
 
 /* ---- Phases (bench_phases.c) ---- */
 
-typedef struct bench_team bench_team;
+typedef struct bench_fill bench_fill;
 typedef struct bench_augment bench_augment;
 
 /** What the phases work on, for one number of threads. */
@@ -46,7 +46,7 @@ typedef struct bench_stage {
   vxm_engine *engines[BENCH_ENGINES_MAX]; /**< as in the plan */
   int engine;                             /**< of the present phase: a number of the plan */
   vxm_model *model;                       /**< of the present phase */
-  bench_team *team;                       /**< of the present phase */
+  bench_fill *fill;                       /**< of the present phase */
   void *values;                           /**< a number per voxel, of the present phase */
   vxm_baseline_options baseline;          /**< of the present phase, and what its last run came to */
   vxm_baseline_report baseline_report;
@@ -99,14 +99,14 @@ void bench_stage_drop(bench_stage *stage);
 /** Drops what the phase's begin has made; the grid stays for the next phase. */
 void bench_stage_end_phase(bench_stage *stage);
 void bench_stage_close(bench_stage *stage);
-/* ---- Filling memory (bench_team.c) ---- */
+/* ---- Filling memory (bench_fill.c) ---- */
 
 /** Makes a block of memory as the grids have it, and threads that fill a share of it each. Fills
  * cli->error. */
-vxm_status bench_team_create(bench_team **out, cli_run *cli, uint64_t bytes, int threads);
+vxm_status bench_fill_create(bench_fill **out, cli_run *cli, uint64_t bytes, int threads);
 /** Fills the block once. */
-void bench_team_fill(bench_team *team);
-void bench_team_destroy(bench_team *team);
+void bench_fill_run(bench_fill *fill);
+void bench_fill_destroy(bench_fill *fill);
 
 /* ---- Making variants for training (bench_augment.c) ---- */
 

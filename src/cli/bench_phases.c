@@ -43,14 +43,14 @@ void bench_stage_drop(bench_stage *stage) {
 
 void bench_stage_end_phase(bench_stage *stage) {
   vxm_model_destroy(stage->model);
-  bench_team_destroy(stage->team);
+  bench_fill_destroy(stage->fill);
   bench_augment_end(stage);
   vxm_published_destroy(stage->published);
   free(stage->values);
   stage->published = NULL;
   stage->values = NULL;
   stage->model = NULL;
-  stage->team = NULL;
+  stage->fill = NULL;
 }
 
 void bench_stage_close(bench_stage *stage) {
@@ -72,11 +72,11 @@ static uint64_t grid_bytes(const bench_stage *stage) {
 /* ---- Memory and meshes ---- */
 
 static vxm_status begin_memset(bench_stage *stage) {
-  return bench_team_create(&stage->team, stage->cli, grid_bytes(stage), stage->threads);
+  return bench_fill_create(&stage->fill, stage->cli, grid_bytes(stage), stage->threads);
 }
 
 static vxm_status run_memset(bench_stage *stage) {
-  bench_team_fill(stage->team);
+  bench_fill_run(stage->fill);
   return VXM_OK;
 }
 

@@ -91,7 +91,6 @@ typedef struct cli_capture {
 /** Runs a command by its name; the first of the words is that name. Its exit status. */
 int cli_capture_command(const char *name, int count, char **words, cli_capture *capture);
 
-/** One run of the program. */
 /** What tells how large voxels are; advice in messages names it. */
 typedef enum cli_sizing {
   CLI_SIZED_BY_RESOLUTION = 0, /**< -r, in commands that have it */
@@ -99,6 +98,7 @@ typedef enum cli_sizing {
   CLI_SIZED_BY_LIKE
 } cli_sizing;
 
+/** One run of the program. */
 struct cli_run {
   const cli_command *command;
   int argc;
@@ -269,7 +269,7 @@ int cli_finish(cli_run *cli, json_t *report);
 /** Warns of a grid in a .bt file that other programs will see in a slightly other place. */
 void cli_warn_lattice(cli_run *cli, const char *path, const char *format, const vxm_space *space);
 
-/* ---- names.c: which files are read and written ---- */
+/* ---- file_conflicts.c: which files are read and written ---- */
 
 /* A file that is read beside the arguments, or written; NULL = none. All are told before cli_check_names. */
 void cli_reads(cli_run *cli, const char *path);
@@ -280,7 +280,7 @@ void cli_writes(cli_run *cli, const char *option, const char *path, bool has_jso
  */
 int cli_check_names(cli_run *cli);
 /** Whether there are the folders that outputs are to be in; false after a line. */
-bool cli_check_places(cli_run *cli);
+bool cli_check_output_folders(cli_run *cli);
 /** CLI_STOP if an argument is a folder where the command takes files (folder.c); among many it is left alone.
  */
 int cli_check_folders(cli_run *cli);
@@ -288,6 +288,9 @@ int cli_check_folders(cli_run *cli);
  */
 const char **cli_mesh_extensions(void);
 void cli_mesh_extensions_free(const char **extensions);
+
+/* ---- output_style.c ---- */
+
 /** The one rule for what is there already: CLI_STOP if a mesh would be written in place of a file, which may
  * be the mesh that all else is made of. Grids, pictures and reports replace what was there. */
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);

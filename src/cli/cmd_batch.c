@@ -34,11 +34,11 @@ static uint64_t memory_bytes(void) {
   return bytes;
 }
 
-static batch_limits limits_of(const cli_run *cli, const batch_wish *wish) {
-  uint64_t share = memory_bytes() / 5 * 4 / (uint64_t)wish->jobs;
-  return (batch_limits){.seconds = wish->time_limit,
+static batch_limits limits_of(const cli_run *cli, const batch_request *given) {
+  uint64_t share = memory_bytes() / 5 * 4 / (uint64_t)given->jobs;
+  return (batch_limits){.seconds = given->time_limit,
                         .memory = cli->limits.memory_limit ? cli->limits.memory_limit : share,
-                        .file_bytes = wish->file_limit};
+                        .file_bytes = given->file_limit};
 }
 
 /* ---- Inputs ---- */
@@ -51,13 +51,13 @@ static bool make_folder(const char *path, batch_error *error) {
 
 /* ---- A run ---- */
 
-static void summarize(const cli_run *cli, const batch_wish *wish, const batch_manifest *manifest,
+static void summarize(const cli_run *cli, const batch_request *given, const batch_manifest *manifest,
                       const batch_tally *tally, bool has_all) {
   char counts[320], time[40];
   double seconds = (batch_clock_ms() - tally->started_ms) / 1000;
   if (!cli_summary(cli))
     return;
-  cli_row(cli, "meshes", "%" PRId64 "%s", tally->total, wish->shards > 1 ? " of this shard" : "");
+  cli_row(cli, "meshes", "%" PRId64 "%s", tally->total, given->shards > 1 ? " of this shard" : "");
   if (manifest->passed_over > 0)
     cli_row(cli, "passed over", "%" PRId64 " files that are no meshes:%s", manifest->passed_over,
             manifest->note);
@@ -70,18 +70,18 @@ static void summarize(const cli_run *cli, const batch_wish *wish, const batch_ma
   if (tally->fresh > 0)
     cli_row(cli, "time", "%s, %.3g meshes a second, %" PRId64 " at a time",
             batch_duration_text(time, seconds), (double)tally->fresh / (seconds > 0.001 ? seconds : 0.001),
-            wish->jobs);
+            given->jobs);
   int64_t bad = tally->total - tally->counts[BATCH_OK] - tally->counts[BATCH_DEGRADED] -
                 tally->counts[BATCH_DUPLICATE] - tally->counts[BATCH_PENDING];
   if (has_all && bad > 0)
-    cli_row(cli, "failures", "%s/failures.tsv, with a command for each that repeats it", wish->output);
+    cli_row(cli, "failures", "%s/failures.tsv, with a command for each that repeats it", given->output);
   if (has_all)
-    cli_row(cli, "page", "%s/index.html", wish->output);
+    cli_row(cli, "page", "%s/index.html", given->output);
 }
 
 static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *manifest,
                   const batch_tally *tally, batch_outcome outcome, batch_error *error) {
-  const batch_wish *wish = maker->wish;
+  const batch_request *given = maker->given;
   if (outcome == BATCH_BROKEN)
     return fail(cli, error);
   json_t *summary = NULL;
@@ -89,7 +89,7 @@ static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *
     json_decref(summary);
     return fail(cli, error);
   }
-  summarize(cli, wish, manifest, tally,
+  summarize(cli, given, manifest, tally,
             json_equal(json_object_get(summary, "shards"), json_object_get(summary, "complete_shards")));
   if (outcome == BATCH_INTERRUPTED) {
     json_decref(summary);
@@ -107,13 +107,13 @@ static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *
 }
 
 static batch_settings settings_of(const cli_run *cli, batch_maker *maker, batch_zygote *zygote) {
-  const batch_wish *wish = maker->wish;
+  const batch_request *given = maker->given;
   bool is_auto = strcmp(cli->progress, "auto") == 0;
-  batch_settings settings = {.output = wish->output,
-                             .shard = (int)wish->shard,
-                             .shards = (int)wish->shards,
-                             .jobs = (int)wish->jobs,
-                             .limits = limits_of(cli, wish),
+  batch_settings settings = {.output = given->output,
+                             .shard = (int)given->shard,
+                             .shards = (int)given->shards,
+                             .jobs = (int)given->jobs,
+                             .limits = limits_of(cli, given),
                              .alone_memory = cli->limits.memory_limit ? 0 : memory_bytes() / 5 * 4,
                              .job = batch_make_job,
                              .work = batch_do_job,
@@ -122,19 +122,19 @@ static batch_settings settings_of(const cli_run *cli, batch_maker *maker, batch_
                              .shows_progress = isatty(STDERR_FILENO),
                              .is_quiet =
                                  cli->quiet || strcmp(cli->progress, "never") == 0 || (is_auto && cli->json)};
-  memcpy(settings.retry, wish->retry, sizeof settings.retry);
+  memcpy(settings.retry, given->retry, sizeof settings.retry);
   return settings;
 }
 
 static int run_batch(cli_run *cli, batch_maker *maker, batch_zygote *zygote, batch_manifest *manifest) {
-  const batch_wish *wish = maker->wish;
+  const batch_request *given = maker->given;
   batch_settings settings = settings_of(cli, maker, zygote);
   batch_error error;
   batch_tally tally;
-  if (wish->dry_run)
+  if (given->dry_run)
     return batch_dry_run(cli, manifest, &settings, maker);
-  json_t *plan = batch_make_settings(wish);
-  bool good = batch_outputs_check(manifest, &settings, &error) && make_folder(wish->output, &error) &&
+  json_t *plan = batch_make_settings(given);
+  bool good = batch_outputs_check(manifest, &settings, &error) && make_folder(given->output, &error) &&
               batch_plan_freeze(manifest, plan, &settings, &error);
   json_decref(plan);
   if (!good)
@@ -152,12 +152,12 @@ static void allow_descriptors(void) {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-static int run_inputs(cli_run *cli, const batch_wish *wish, batch_maker *maker) {
+static int run_inputs(cli_run *cli, const batch_request *given, batch_maker *maker) {
   batch_error error;
   batch_manifest manifest;
   batch_zygote zygote;
   const char **extensions = cli_mesh_extensions();
-  batch_inputs inputs = {cli->arguments, cli->argument_count, extensions, wish->output};
+  batch_inputs inputs = {cli->arguments, cli->argument_count, extensions, given->output};
   int status = CLI_FAILED;
   allow_descriptors();
   if (!extensions || !batch_zygote_start(&zygote, batch_do_job, maker, &error))
@@ -179,57 +179,57 @@ static bool is_check(const char *word) {
   return cli_read_choice(word, checks) >= 0;
 }
 
-static int check(cli_run *cli, const batch_wish *wish) {
+static int check(cli_run *cli, const batch_request *given) {
   const char *word = cli->arguments[0], *folder = cli->arguments[1];
   bool is_export = *word == 'e';
-  if (wish->of_run)
-    return cli_usage(cli, "--%s is for making a batch, not for 'voxmend batch %s'", wish->of_run, word),
+  if (given->of_run)
+    return cli_usage(cli, "--%s is for making a batch, not for 'voxmend batch %s'", given->of_run, word),
            cli->status;
-  if (!is_export && (wish->output || wish->to || wish->export_options.count > 0))
+  if (!is_export && (given->output || given->to || given->export_options.count > 0))
     return cli_usage(cli, "'voxmend batch %s' takes a folder alone; -o, --to and the like are for export",
                      word),
            cli->status;
   if (is_export)
-    return batch_export_command(cli, folder, wish);
+    return batch_export_command(cli, folder, given);
   if (!cli_start(cli))
     return CLI_FAILED;
   return *word == 's' ? batch_status_command(cli, folder) : batch_verify_command(cli, folder);
 }
 
 /** What was wanted, once the command line is read. */
-static int do_wish(cli_run *cli, batch_wish *wish) {
+static int do_wish(cli_run *cli, batch_request *given) {
   if (cli->argument_count == 2 && is_check(cli->arguments[0]))
-    return check(cli, wish);
-  if (wish->to || wish->export_options.count > 0)
+    return check(cli, given);
+  if (given->to || given->export_options.count > 0)
     return cli_usage(cli, "%s goes with 'voxmend batch export DIR'",
-                     wish->to ? "--to" : wish->export_options.words[0]),
+                     given->to ? "--to" : given->export_options.words[0]),
            cli->status;
   if (cli->argument_count == 0)
     return cli_usage(cli, "no input is named: folders, meshes, lists or archives"), cli->status;
-  if (!wish->output && wish->dry_run)
-    wish->output = "/nonexistent"; /* nothing is written there */
-  if (!wish->output)
+  if (!given->output && given->dry_run)
+    given->output = "/nonexistent"; /* nothing is written there */
+  if (!given->output)
     return cli_usage(cli, "-o DIR is missing"), cli->status;
-  batch_maker maker = {.wish = wish, .output = wish->output};
+  batch_maker maker = {.given = given, .output = given->output};
   if (batch_try_options(cli, &maker) == CLI_STOP)
     return cli->status;
   uint64_t each = cli->limits.memory_limit;
   cli->limits.memory_limit = 0; /* of a mesh, not of this program */
   bool started = cli_start(cli);
   cli->limits.memory_limit = each;
-  return started ? run_inputs(cli, wish, &maker) : CLI_FAILED;
+  return started ? run_inputs(cli, given, &maker) : CLI_FAILED;
 }
 
 static int run(cli_run *cli) {
-  batch_wish wish = {.format = "binvox",
-                     .threads = 1,
-                     .shards = 1,
-                     .time_limit = 300,
-                     .file_limit = UINT64_C(64) << 30,
-                     .pictures = 48};
-  int status = batch_read_arguments(cli, &wish) == CLI_STOP ? cli->status : do_wish(cli, &wish);
-  batch_words_free(&wish.grid_options);
-  batch_words_free(&wish.export_options);
+  batch_request given = {.format = "binvox",
+                         .threads = 1,
+                         .shards = 1,
+                         .time_limit = 300,
+                         .file_limit = UINT64_C(64) << 30,
+                         .pictures = 48};
+  int status = batch_read_arguments(cli, &given) == CLI_STOP ? cli->status : do_wish(cli, &given);
+  batch_words_free(&given.grid_options);
+  batch_words_free(&given.export_options);
   return status;
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** voxmend carve: what a tool leaves of a grid on its way. */
-#include "cli/carve.h"
+/** voxmend carve: what a tool leaves of a grid along its path. */
 #include "cli/repair.h"
 #include "cli/repair_common.h"
+#include "cli/toolpath.h"
 #include "cli/values.h"
 
 #include <inttypes.h>
@@ -99,15 +99,15 @@ static int read_stock(cli_run *cli, outcome *made, const request *given) {
 
 /* ---- Cutting ---- */
 
-static int step(cli_run *cli, outcome *made, vxm_carver *carver, const cli_way *way, const double pose[12],
-                bool is_lifted) {
+static int step(cli_run *cli, outcome *made, vxm_carver *carver, const cli_toolpath *toolpath,
+                const double pose[12], bool is_lifted) {
   vxm_carve_report report = VXM_CARVE_REPORT_INIT;
   double start = cli_clock();
   vxm_status status = is_lifted ? vxm_carver_place(&report, carver, pose, &cli->error)
                                 : vxm_carver_move(&report, carver, pose, &cli->error);
   made->carve_ms += cli_clock() - start;
   if (status == VXM_ERROR_ARGUMENT || status == VXM_ERROR_RANGE)
-    return cli_fail_text(cli, "%s:%" PRId64 ": %s", way->name, way->line, cli->error.text);
+    return cli_fail_text(cli, "%s:%" PRId64 ": %s", toolpath->name, toolpath->line, cli->error.text);
   if (status != VXM_OK)
     return cli_fail(cli);
   made->steps++;
@@ -117,15 +117,15 @@ static int step(cli_run *cli, outcome *made, vxm_carver *carver, const cli_way *
   return CLI_DONE;
 }
 
-static int go(cli_run *cli, outcome *made, vxm_carver *carver, cli_way *way) {
+static int go(cli_run *cli, outcome *made, vxm_carver *carver, cli_toolpath *toolpath) {
   for (;;) {
     double pose[12];
     bool is_lifted, is_end;
-    int status = cli_way_next(cli, way, pose, &is_lifted, &is_end);
+    int status = cli_toolpath_next(cli, toolpath, pose, &is_lifted, &is_end);
     if (status == CLI_DONE && cli_progress(cli, "carving", 0))
       return cli_fail_text(cli, "interrupted");
     if (status == CLI_DONE && !is_end)
-      status = step(cli, made, carver, way, pose, is_lifted);
+      status = step(cli, made, carver, toolpath, pose, is_lifted);
     if (status != CLI_DONE || is_end)
       return status;
   }
@@ -143,19 +143,19 @@ static int take_octree(cli_run *cli, outcome *made, const vxm_carver *carver) {
 
 static int carve(cli_run *cli, outcome *made, const request *given) {
   vxm_carver *carver = NULL;
-  cli_way way = {.file = NULL};
+  cli_toolpath toolpath = {.file = NULL};
   vxm_status created = made->sparse
                            ? vxm_carver_create_sparse(&carver, made->sparse, made->tool.mesh, &cli->error)
                            : vxm_carver_create(&carver, made->grid, made->tool.mesh, &cli->error);
-  int status = created == VXM_OK ? cli_way_open(cli, &way, given->path) : cli_fail(cli);
+  int status = created == VXM_OK ? cli_toolpath_open(cli, &toolpath, given->path) : cli_fail(cli);
   made->before = made->sparse ? vxm_sparse_count(made->sparse) : vxm_grid_count(made->grid);
   if (status == CLI_DONE)
-    status = go(cli, made, carver, &way);
+    status = go(cli, made, carver, &toolpath);
   if (status == CLI_DONE && made->steps == 0)
-    status = cli_fail_text(cli, "%s: there is no position in it", way.name);
+    status = cli_fail_text(cli, "%s: there is no position in it", toolpath.name);
   if (status == CLI_DONE && made->sparse)
     status = take_octree(cli, made, carver);
-  cli_way_close(&way);
+  cli_toolpath_close(&toolpath);
   vxm_carver_destroy(carver);
   return status;
 }
@@ -244,13 +244,12 @@ const cli_command cli_command_carve = {
     .arguments = "GRID -t TOOL -p PATH.csv -o FILE [OPTION]...",
     .summary = "remove what a moving tool cuts: milling, drilling",
     .notes =
-        "Every voxel is removed whose centre comes to lie within the tool, at any time of its way. A "
-        "straight\n"
-        "way is covered exactly, however long a step is and whatever the shape of the tool; through turns "
-        "no\n"
-        "point moves by more than half a voxel at a time, without gaps. The tool is repaired as 'voxmend\n"
-        "voxelize' does. In the path, lines that begin with # and a heading such as x,y,z are passed over.\n"
-        "The report (--json) has the voxels that each step has removed.\n\n"
+        "Every voxel is removed whose centre comes to lie within the tool, anywhere along its path. A\n"
+        "straight step is covered exactly, however long it is and whatever the shape of the tool; through\n"
+        "turns no point moves by more than half a voxel at a time, without gaps. The tool is repaired as\n"
+        "'voxmend voxelize' does. In the path, lines that begin with # and a heading such as x,y,z are "
+        "passed\n"
+        "over. The report (--json) has the voxels that each step has removed.\n\n"
         "Examples:\n"
         "  voxmend carve block.npy -t ball.stl -p path.csv -o part.npy\n"
         "  voxmend carve block.octree -t drill.stl -p holes.csv -o part.octree --json\n"

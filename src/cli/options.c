@@ -284,7 +284,7 @@ int cli_next_option(cli_run *cli, const char **value) {
 
 bool cli_start(cli_run *cli) {
   cli_progress_init(cli);
-  if (!cli_check_places(cli))
+  if (!cli_check_output_folders(cli))
     return false;
   if (vxm_context_create(&cli->context, &cli->limits, &cli->error) == VXM_OK &&
       vxm_context_hold_files(cli->context, &cli->error) == VXM_OK)

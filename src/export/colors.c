@@ -2,7 +2,7 @@
 #include "export/colors.h"
 #include "base/clock.h"
 #include "export/volume_colors.h"
-#include "gridio/formats/octree_values.h"
+#include "gridio/formats/octree/octree_values.h"
 #include "gridio/gridio.h"
 #include "voxel/labels/color_nodes.h"
 #include "voxel/labels/mesh_colors.h"

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "base/exact_math.h"
 #include "grid/bit_transpose.h"
-#include "gridio/formats/octree_values.h"
+#include "gridio/formats/octree/octree_values.h"
 #include "gridio/gridio.h"
 #include "voxel/fields/distance_nodes.h"
 

@@ -2,7 +2,7 @@
 #include "export/labels.h"
 #include "base/clock.h"
 #include "grid/bit_transpose.h"
-#include "gridio/formats/octree_values.h"
+#include "gridio/formats/octree/octree_values.h"
 #include "gridio/gridio.h"
 #include "voxel/labels/label_nodes.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "export/model_writer.h"
 #include "base/clock.h"
-#include "grid/sum.h"
+#include "grid/count_hash.h"
 #include "gridio/common/grid_writer.h"
 #include "gridio/gridio.h"
 #include "voxel/model/memory_need.h"
@@ -108,7 +108,7 @@ typedef struct stream {
   vxm_grid_writer *file;
   vxm_window window; /**< with room for plan->slices slices, and for one before them */
   uint64_t *before;  /**< the slice before the window */
-  vxm_sum sum;
+  vxm_count_hash sum;
   double fill_ms, write_ms;
 } stream;
 
@@ -119,7 +119,7 @@ static vxm_status do_window(stream *s, int64_t begin, vxm_error *error) {
   vxm_status status = vxm_model_pass_fill(s->pass, &s->window, error);
   if (status != VXM_OK)
     return status;
-  vxm_sum_add(&s->sum, s->model->context, &s->window, s->before);
+  vxm_count_hash_add(&s->sum, s->model->context, &s->window, s->before);
   size_t last = (size_t)(s->window.end - begin - 1) * s->window.slice_words;
   memcpy(s->before, s->window.words + last, s->window.slice_words * sizeof *s->before);
   double made = vxm_clock_ms();
@@ -133,7 +133,7 @@ static vxm_status write_windows(stream *s, const char *path, const char *format,
   vxm_context *context = s->model->context;
   vxm_error local = VXM_ERROR_INIT;
   s->window = s->plan->shape;
-  s->sum = vxm_sum_start(s->space);
+  s->sum = vxm_count_hash_start(s->space);
   s->before = vxm_alloc(context, s->window.slice_words, sizeof *s->before, &local);
   s->window.words =
       vxm_alloc(context, s->window.slice_words * (size_t)s->plan->slices, sizeof *s->before, &local);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/engines.h"
 #include "config.h"
-#include "gpu/team_names.h"
+#include "gpu/multi_device_names.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -303,8 +303,8 @@ vxm_status vxm_engines_make(vxm_engine **out, vxm_context *context, const char *
   vxm_status status = vxm_context_acquire(&held, context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_team_is_named(name) ? vxm_team_make(out, held, name, options, error)
-                                   : vxm_engines_make_one(out, held, name, options, error);
+  status = vxm_multi_device_is_named(name) ? vxm_multi_device_make(out, held, name, options, error)
+                                           : vxm_engines_make_one(out, held, name, options, error);
   if (status == VXM_OK) {
     (*out)->info.size = sizeof(*out)->info;
     atomic_init(&(*out)->holders, 1);

@@ -2,7 +2,7 @@
 #include "grid/bitgrid.h"
 #include "base/sized.h"
 #include "base/threads.h"
-#include "grid/sum.h"
+#include "grid/count_hash.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -118,8 +118,8 @@ const uint64_t *vxm_grid_words(const vxm_grid *grid) {
 
 void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
   vxm_window window = vxm_window_of_grid(grid);
-  vxm_sum sum = vxm_sum_start(&grid->space);
-  vxm_sum_add(&sum, grid->context, &window, NULL);
+  vxm_count_hash sum = vxm_count_hash_start(&grid->space);
+  vxm_count_hash_add(&sum, grid->context, &window, NULL);
   *count = sum.count;
   *hash = sum.hash;
 }

@@ -97,7 +97,7 @@ const vxm_octree_node *vxm_octree_low_node(const vxm_sparse *sparse, int64_t i, 
 /** Whether voxel (i,j,k) is set; false outside. */
 bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
 /** vxm_grid_count and vxm_grid_hash of the same voxels. */
-void vxm_octree_sum(const vxm_sparse *sparse, int64_t *count, uint64_t *hash);
+void vxm_octree_count_hash(const vxm_sparse *sparse, int64_t *count, uint64_t *hash);
 /** Replaces the words of a window, in any layout, on the threads of the octree's context. */
 void vxm_octree_fill(const vxm_sparse *sparse, const vxm_window *window);
 /** Takes the next slices. */

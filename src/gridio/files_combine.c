@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Octree files with values, combined node by node: what is one value in all of them is one in the result. */
-#include "gridio/formats/octree_reader.h"
+#include "gridio/formats/octree/octree_reader.h"
 #include "gridio/values_combine.h"
 
 /** What a worker has of its own. */

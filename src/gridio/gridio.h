@@ -7,7 +7,7 @@
 
 /**
  * Reads a grid. The format is told by content first and by the extension second. What a file leaves out or
- * adds, but can be done without, becomes a note of the grid.
+ * adds, but can be done without, becomes a warning of the grid.
  *
  * @param context not NULL
  * @param path    "-" reads standard input (not raw, which needs the JSON file beside it)

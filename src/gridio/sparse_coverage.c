@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/sparse_coverage.h"
 #include "base/threads.h"
-#include "grid/cut.h"
+#include "grid/crop.h"
 #include "grid/octree_count.h"
-#include "gridio/formats/octree_file.h"
+#include "gridio/formats/octree/octree_file.h"
 
 #include <pthread.h>
 

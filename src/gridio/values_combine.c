@@ -3,7 +3,7 @@
 #include "base/hash.h"
 #include "base/task_progress.h"
 #include "base/threads.h"
-#include "gridio/common/values_cut.h"
+#include "gridio/common/values_crop.h"
 
 /* ---- Types ---- */
 

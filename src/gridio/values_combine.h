@@ -9,7 +9,7 @@
 #define VXM_GRIDIO_VALUES_COMBINE_H
 
 #include "gridio/common/values.h"
-#include "gridio/formats/octree_file.h"
+#include "gridio/formats/octree/octree_file.h"
 
 /** What values are, for both operands. */
 typedef struct vxm_values_type {

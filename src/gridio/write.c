@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/bit_transpose.h"
 #include "gridio/common/values_writer.h"
-#include "gridio/formats/blocks.h"
+#include "gridio/formats/minecraft/blocks.h"
 #include "gridio/gridio.h"
 #include "gridio/mesh/surface_mesh.h"
 #include "meshio/meshio.h"
@@ -59,10 +59,10 @@ static vxm_status write_bytes(const vxm_grid *grid, const char *path, const vxm_
   return status;
 }
 
-static vxm_status write_surface(const vxm_grid *grid, const char *path, const char *format, unsigned how,
+static vxm_status write_surface(const vxm_grid *grid, const char *path, const char *format, unsigned flags,
                                 vxm_error *error) {
   vxm_soup *surface;
-  vxm_status status = vxm_gridio_surface_mesh(&surface, grid, how, error);
+  vxm_status status = vxm_gridio_surface_mesh(&surface, grid, flags, error);
   if (status != VXM_OK)
     return status;
   status = vxm_meshio_write(surface, path, format, VXM_WRITE_POLYGONS, error);
@@ -83,10 +83,10 @@ vxm_status vxm_gridio_write_with(const vxm_grid *grid, const char *path,
   const vxm_grid_format *found = vxm_grid_format_for(path, options->format, error);
   if (!found || vxm_style_of(&style, options->blocks, options->up, error) != VXM_OK)
     return VXM_ERROR_ARGUMENT;
-  unsigned how = (options->keep_polygons ? 0 : VXM_SURFACE_TRIANGLES) |
-                 (options->keep_contacts ? 0 : VXM_SURFACE_MANIFOLD);
+  unsigned flags = (options->keep_polygons ? 0 : VXM_SURFACE_MESH_TRIANGLES) |
+                   (options->keep_contacts ? 0 : VXM_SURFACE_MESH_MANIFOLD);
   if (found->is_surface)
-    return write_surface(grid, path, found->name, how, error);
+    return write_surface(grid, path, found->name, flags, error);
   return vxm_grid_format_streams(found) ? write_slices(grid, path, found->name, error)
                                         : write_bytes(grid, path, found, style, error);
 }

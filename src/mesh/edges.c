@@ -2,7 +2,7 @@
 #include "mesh/edges.h"
 
 #include "base/threads.h"
-#include "mesh/across.h"
+#include "mesh/face_adjacency.h"
 #include "mesh/sort.h"
 
 #include <stdatomic.h>
@@ -137,8 +137,8 @@ static vxm_status run(vxm_edges *out, content wanted, vxm_context *context, cons
   *out = (vxm_edges){.context = context};
   vxm_status status = vxm_side_table_build(&table, context, soup, vertex_map, &local);
   if (status == VXM_OK && wanted == PAIRS_OR_SIDES)
-    status = vxm_across_pair(&out->across, &table, soup, &local);
-  if (out->across)
+    status = vxm_face_adjacency_build(&out->adjacent, &table, soup, &local);
+  if (out->adjacent)
     out->count = table.count / 2;
   else if (status == VXM_OK)
     status = list(out, &table, soup->corner_count, wanted != EDGES, &local);
@@ -168,7 +168,7 @@ vxm_status vxm_edges_build_pairs(vxm_edges *out, vxm_context *context, const vxm
 void vxm_edges_destroy(vxm_edges *edges) {
   if (!edges->context)
     return;
-  vxm_free(edges->context, edges->across);
+  vxm_free(edges->context, edges->adjacent);
   vxm_free(edges->context, edges->sides);
   vxm_free(edges->context, edges->edges);
   *edges = (vxm_edges){0};

@@ -27,14 +27,14 @@ typedef struct vxm_edges {
   vxm_context *context;
   vxm_edge *edges;
   size_t count;
-  uint32_t *sides;  /**< per corner the place of the edge from it to the next corner of its face, or
-                       VXM_NO_EDGE where there is none; NULL if it was not asked for */
-  uint32_t *across; /**< per corner the face across that side (mesh/across.h), or NULL: see
+  uint32_t *sides;    /**< per corner the place of the edge from it to the next corner of its face, or
+                         VXM_NO_EDGE where there is none; NULL if it was not asked for */
+  uint32_t *adjacent; /**< per corner the face across that side (mesh/face_adjacency.h), or NULL: see
                        vxm_edges_build_pairs */
-  size_t odd;       /**< edges with an odd number of sides; 0 means closed mod 2 */
-  size_t open;      /**< with one side */
-  size_t crowded;   /**< with more than two */
-  size_t against;   /**< with two that run the same way */
+  size_t odd;         /**< edges with an odd number of sides; 0 means closed mod 2 */
+  size_t open;        /**< with one side */
+  size_t crowded;     /**< with more than two */
+  size_t against;     /**< with two that run the same way */
 } vxm_edges;
 
 /**
@@ -57,7 +57,7 @@ vxm_status vxm_edges_build_sides(vxm_edges *out, vxm_context *context, const vxm
                                  const uint32_t *vertex_map, vxm_error *error);
 /**
  * Where each edge has two sides that run opposite ways, as in most meshes that are closed, only counts them,
- * and tells which face lies `across` each side: there are no `edges` and no `sides`, which take more than
+ * and tells which face lies `adjacent` each side: there are no `edges` and no `sides`, which take more than
  * half of the time. Else as vxm_edges_build_sides.
  */
 vxm_status vxm_edges_build_pairs(vxm_edges *out, vxm_context *context, const vxm_soup *soup,

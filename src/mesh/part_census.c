@@ -104,7 +104,7 @@ static vxm_status measure(measuring *m, size_t part_count) {
   memset(m->states, 0, part_count * sizeof *m->states);
   for (size_t p = 0; p < part_count; p++) {
     m->states[p].size = sizeof *m->states;
-    m->states[p].self_intersections = -1; /* which another room counts */
+    m->states[p].self_intersections = -1; /* which src/repair counts */
   }
   for (size_t v = 0; v < m->view.vertex_count; v++)
     m->vertex_part[v] = NO_PART;

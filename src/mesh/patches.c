@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/patches.h"
 
-#include "mesh/across.h"
+#include "mesh/face_adjacency.h"
 
 #include <string.h>
 
@@ -10,7 +10,7 @@ static const uint32_t NONE = UINT32_MAX;
 /** A walk over the faces from one to those across its sides. */
 typedef struct walk {
   const vxm_soup *soup;
-  const uint32_t *across;
+  const uint32_t *adjacent;
   uint32_t *label; /**< per face: its patch, or NONE */
   uint32_t *queue; /**< faces that have a label; room for one more than there are faces */
   bool may_repeat;
@@ -18,8 +18,8 @@ typedef struct walk {
 
 /** Fetches what will be needed soon, which may lie here and there. */
 static inline void look_ahead(const walk *w, uint64_t corner) {
-  if (w->across[corner] != NONE)
-    __builtin_prefetch(w->label + w->across[corner], 1);
+  if (w->adjacent[corner] != NONE)
+    __builtin_prefetch(w->label + w->adjacent[corner], 1);
 }
 
 /** Gives the faces across the sides of a face its label, and puts those that had none into the queue: without
@@ -28,7 +28,7 @@ static inline size_t visit(walk *w, uint32_t face, size_t queued) {
   uint32_t label = w->label[face], other = NONE;
   bool same = true;
   for (uint64_t c = w->soup->offsets[face]; c < w->soup->offsets[face + 1]; c++) {
-    uint32_t next = w->across[c];
+    uint32_t next = w->adjacent[c];
     if (next == NONE)
       continue;
     same &= (next < face) & ((other == NONE) | (next == other));
@@ -57,10 +57,10 @@ static vxm_status visit_patch(walk *w, uint32_t first, uint32_t label, vxm_error
 }
 
 /** Patches are numbered in the order of their first faces, as each is walked over from there. */
-static vxm_status visit_all(vxm_patches *out, const vxm_soup *soup, const uint32_t *across,
+static vxm_status visit_all(vxm_patches *out, const vxm_soup *soup, const uint32_t *adjacent,
                             vxm_error *error) {
   vxm_status status = VXM_OK;
-  walk w = {.soup = soup, .across = across, .label = out->of_face};
+  walk w = {.soup = soup, .adjacent = adjacent, .label = out->of_face};
   w.queue = vxm_alloc(out->context, soup->face_count + 1, sizeof *w.queue, error);
   if (!w.queue)
     return error->code;
@@ -78,12 +78,12 @@ static vxm_status visit_all(vxm_patches *out, const vxm_soup *soup, const uint32
 
 /** What lies across the sides along edges, in a soup with edges of one side, across which lies the face
  * itself, or whose two run the same way. */
-static vxm_status find_across(uint32_t **across, const vxm_soup *soup, const vxm_edges *edges,
-                              vxm_error *error) {
+static vxm_status find_adjacent(uint32_t **adjacent, const vxm_soup *soup, const vxm_edges *edges,
+                                vxm_error *error) {
   vxm_context *context = soup->context;
   const uint32_t *sides = edges->sides;
-  *across = vxm_alloc(context, soup->corner_count, sizeof **across, error);
-  uint32_t *both = *across ? vxm_calloc(context, edges->count, sizeof *both, error) : NULL;
+  *adjacent = vxm_alloc(context, soup->corner_count, sizeof **adjacent, error);
+  uint32_t *both = *adjacent ? vxm_calloc(context, edges->count, sizeof *both, error) : NULL;
   if (!both)
     return error->code;
   vxm_status status = VXM_OK;
@@ -95,7 +95,7 @@ static vxm_status find_across(uint32_t **across, const vxm_soup *soup, const vxm
   }
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
-      (*across)[c] = sides[c] != VXM_NO_EDGE ? both[sides[c]] ^ (uint32_t)f : VXM_ACROSS_NONE;
+      (*adjacent)[c] = sides[c] != VXM_NO_EDGE ? both[sides[c]] ^ (uint32_t)f : VXM_NO_ADJACENT;
     status = vxm_ask_at(f, context, error);
   }
   vxm_free(context, both);
@@ -106,17 +106,17 @@ static vxm_status build(vxm_patches *out, const vxm_soup *soup, const vxm_edges 
   if (soup->face_count >= UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu faces are too many to number; split the mesh",
                     soup->face_count);
-  uint32_t *across = NULL;
+  uint32_t *adjacent = NULL;
   vxm_status status = VXM_OK;
   out->is_closed = edges->open == 0;
   out->of_face = vxm_alloc(out->context, soup->face_count, sizeof *out->of_face, error);
   if (!out->of_face)
     return error->code;
-  if (!edges->across)
-    status = find_across(&across, soup, edges, error);
+  if (!edges->adjacent)
+    status = find_adjacent(&adjacent, soup, edges, error);
   if (status == VXM_OK)
-    status = visit_all(out, soup, edges->across ? edges->across : across, error);
-  vxm_free(out->context, across);
+    status = visit_all(out, soup, edges->adjacent ? edges->adjacent : adjacent, error);
+  vxm_free(out->context, adjacent);
   return status;
 }
 

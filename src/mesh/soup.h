@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The polygon soup: what every room hands on. A vxm_mesh of the public header is a soup. */
+/** The polygon soup: what all folders after this one work on. A vxm_mesh of the public header is a soup. */
 #ifndef VXM_MESH_SOUP_H
 #define VXM_MESH_SOUP_H
 

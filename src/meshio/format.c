@@ -309,11 +309,11 @@ static uint64_t least_bytes(const vxm_soup *soup, const vxm_format *format, bool
 }
 
 static vxm_status write_and_check(vxm_output *output, const vxm_soup *soup, const vxm_format *format,
-                                  unsigned how, vxm_meshio_check check, void *payload, vxm_error *error) {
+                                  unsigned flags, vxm_meshio_check check, void *payload, vxm_error *error) {
   vxm_soup *back = NULL;
-  vxm_status status = vxm_output_expect(output, least_bytes(soup, format, how & VXM_WRITE_ASCII), error);
+  vxm_status status = vxm_output_expect(output, least_bytes(soup, format, flags & VXM_WRITE_ASCII), error);
   if (status == VXM_OK)
-    status = format->write(soup, output, how, error);
+    status = format->write(soup, output, flags, error);
   if (status != VXM_OK || vxm_output_failed(output) || !check)
     return status;
   status = read_back(&back, output, soup, format, error);
@@ -323,8 +323,8 @@ static vxm_status write_and_check(vxm_output *output, const vxm_soup *soup, cons
   return status;
 }
 
-vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, const char *format, unsigned how,
-                                    vxm_meshio_check check, void *payload, vxm_error *error) {
+vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, const char *format,
+                                    unsigned flags, vxm_meshio_check check, void *payload, vxm_error *error) {
   const char *wanted = format ? format : vxm_path_extension(path);
   const vxm_format *row = format ? by_name(format) : by_extension(path);
   if (!row) {
@@ -338,7 +338,7 @@ vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, cons
       (check ? vxm_output_open_readable : vxm_output_open)(&output, soup->context, path, error);
   if (status != VXM_OK)
     return status;
-  status = write_and_check(output, soup, row, how, check, payload, error);
+  status = write_and_check(output, soup, row, flags, check, payload, error);
   /* A failed output is committed too, for the message that says why. */
   if (status == VXM_OK || vxm_output_failed(output))
     return vxm_output_commit(output, error);
@@ -346,7 +346,7 @@ vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, cons
   return status;
 }
 
-vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, unsigned how,
+vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, unsigned flags,
                             vxm_error *error) {
-  return vxm_meshio_write_checked(soup, path, format, how, NULL, NULL, error);
+  return vxm_meshio_write_checked(soup, path, format, flags, NULL, NULL, error);
 }

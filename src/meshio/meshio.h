@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "mesh/soup.h"
-#include "meshio/common/write_how.h"
+#include "meshio/common/write_flags.h"
 
 /**
  * Reads a mesh from memory. The format is told by content first and by the extension of `name` second.
@@ -41,18 +41,18 @@ vxm_status vxm_meshio_read_file(vxm_soup **out, vxm_context *context, const char
  *
  * @param path   "-" is standard output
  * @param format "off", "obj", "stl" or "ply" in any case; NULL = by the extension of `path`
- * @param how    VXM_WRITE_ASCII and others (meshio/common/write_how.h); off and obj are always text
+ * @param flags  VXM_WRITE_ASCII and others (meshio/common/write_flags.h); off and obj are always text
  * @return VXM_OK; VXM_ERROR_ARGUMENT for a format that is not known; VXM_ERROR_IO; VXM_ERROR_RANGE where STL
  *         cannot hold the mesh; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, unsigned how,
+vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, unsigned flags,
                             vxm_error *error);
 
 /** Looks at what was written, as it was read back. A status other than VXM_OK drops the file. */
 typedef vxm_status (*vxm_meshio_check)(const vxm_soup *read_back, void *payload, vxm_error *error);
 
 /** As vxm_meshio_write, but before the file gets its name it is read back and checked. */
-vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, const char *format, unsigned how,
-                                    vxm_meshio_check check, void *payload, vxm_error *error);
+vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, const char *format,
+                                    unsigned flags, vxm_meshio_check check, void *payload, vxm_error *error);
 
 #endif

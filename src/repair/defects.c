@@ -20,6 +20,13 @@ typedef struct finding {
   vxm_error error;
 } finding;
 
+const char *vxm_defect_name(vxm_defect_kind kind) {
+  static const char *const names[VXM_DEFECT_KINDS] = {
+      "nonfinite_vertex", "degenerate_face",   "duplicate_face",     "boundary_edge",
+      "nonmanifold_edge", "inconsistent_edge", "nonmanifold_vertex", "self_intersection"};
+  return kind >= 0 && kind < VXM_DEFECT_KINDS ? names[kind] : "";
+}
+
 /* ---- Entering ---- */
 
 static bool enter(finding *f, const vxm_defect *defect) {

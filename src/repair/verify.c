@@ -3,7 +3,7 @@
 
 #include "mesh/weld.h"
 #include "meshio/meshio.h"
-#include "repair/state/merge_places.h"
+#include "repair/state/merge_rule.h"
 #include "repair/state/self_intersections.h"
 #include "repair/state/vertex_fans.h"
 
@@ -273,5 +273,6 @@ vxm_status vxm_write_verified(vxm_verification *out, const vxm_soup *soup, const
                               bool best_effort, vxm_error *error) {
   *out = (vxm_verification){0};
   checking payload = {out, repair, path, best_effort};
-  return vxm_meshio_write_checked(soup, path, write->format, vxm_meshio_how(write), check, &payload, error);
+  return vxm_meshio_write_checked(soup, path, write->format, vxm_write_flags_of(write), check, &payload,
+                                  error);
 }

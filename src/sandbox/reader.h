@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What a module that reads foreign formats offers. It runs in a process of its own (sandbox.h). */
+/** What a module that reads foreign formats offers. It runs in a process of its own (reader_process.h). */
 #ifndef VXM_SANDBOX_READER_H
 #define VXM_SANDBOX_READER_H
 

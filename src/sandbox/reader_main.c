@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * voxmend-reader: reads one file through a module, for a process that must outlive it (sandbox.h). The file
- * comes over standard input, which is a socket, and the soup or the grid goes back over it. Before it looks
- * at the file it gives up all that reading does not take (confine.h).
+ * voxmend-reader: reads one file through a module, for a process that must outlive it (reader_process.h). The
+ * file comes over standard input, which is a socket, and the soup or the grid goes back over it. Before it
+ * looks at the file it gives up all that reading does not take (confine.h).
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -99,13 +99,13 @@ static vxm_status read_file(vxm_context *context, const vxm_reader *reader, char
   vxm_memory_name(data, (size_t)size);
   vxm_reader_request request = {.data = data,
                                 .size = (size_t)size,
-                                .name = arguments[VXM_APART_NAME],
-                                .hint = arguments[VXM_APART_HINT],
-                                .deflection = strtod(arguments[VXM_APART_DEFLECTION], NULL),
+                                .name = arguments[VXM_READER_ARG_NAME],
+                                .hint = arguments[VXM_READER_ARG_HINT],
+                                .deflection = strtod(arguments[VXM_READER_ARG_DEFLECTION], NULL),
                                 .path = VXM_MEMORY_NAME,
                                 .fetch = fetch,
                                 .payload = &unfetched};
-  bool has_look = strcmp(arguments[VXM_APART_LOOK], "1") == 0;
+  bool has_look = strcmp(arguments[VXM_READER_ARG_LOOK], "1") == 0;
   status = reader->read ? send_mesh(context, reader, &request, has_look, error)
                         : send_grid(context, reader, &request, error);
   vxm_free(context, data);
@@ -118,14 +118,14 @@ static uint64_t number(char **arguments, int which) {
 
 static vxm_status serve(vxm_context *context, char **arguments, vxm_error *error) {
   const vxm_module *module;
-  vxm_status status = vxm_module_load(&module, arguments[VXM_APART_MODULE], "reading this file", error);
+  vxm_status status = vxm_module_load(&module, arguments[VXM_READER_ARG_MODULE], "reading this file", error);
   if (status != VXM_OK)
     return status;
   const vxm_reader *reader = module->functions;
   const vxm_confinement confinement = {.channel = CHANNEL,
-                                       .memory = number(arguments, VXM_APART_MEMORY),
-                                       .memory_max = number(arguments, VXM_APART_MEMORY_MAX),
-                                       .seconds = number(arguments, VXM_APART_SECONDS)};
+                                       .memory = number(arguments, VXM_READER_ARG_MEMORY),
+                                       .memory_max = number(arguments, VXM_READER_ARG_MEMORY_MAX),
+                                       .seconds = number(arguments, VXM_READER_ARG_SECONDS)};
   reader->prepare();
   const char *missing = vxm_confine(&confinement);
   if (missing) {
@@ -137,9 +137,9 @@ static vxm_status serve(vxm_context *context, char **arguments, vxm_error *error
 }
 
 int main(int argc, char **argv) {
-  if (argc != VXM_APART_ARGUMENTS)
+  if (argc != VXM_READER_ARGS)
     return WRONG_CALL;
-  if (!vxm_confine_early((pid_t)number(argv, VXM_APART_PARENT)))
+  if (!vxm_confine_early((pid_t)number(argv, VXM_READER_ARG_PARENT)))
     return GONE;
   vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
   options.threads = 1;

@@ -97,17 +97,17 @@ static vxm_status start(vxm_process *reader, const char *program, const char *mo
   snprintf(memory, sizeof memory, "%" PRIu64, c->allowed.memory);
   snprintf(memory_max, sizeof memory_max, "%" PRIu64, c->allowed.memory_max);
   snprintf(seconds, sizeof seconds, "%" PRIu64, c->allowed.seconds);
-  const char *arguments[VXM_APART_ARGUMENTS + 1] = {
-      [VXM_APART_PROGRAM] = "voxmend-reader",
-      [VXM_APART_MODULE] = module,
-      [VXM_APART_PARENT] = parent,
-      [VXM_APART_NAME] = c->request->name,
-      [VXM_APART_HINT] = c->request->hint,
-      [VXM_APART_DEFLECTION] = deflection,
-      [VXM_APART_LOOK] = c->has_look ? "1" : "0",
-      [VXM_APART_MEMORY] = memory,
-      [VXM_APART_MEMORY_MAX] = memory_max,
-      [VXM_APART_SECONDS] = seconds,
+  const char *arguments[VXM_READER_ARGS + 1] = {
+      [VXM_READER_ARG_PROGRAM] = "voxmend-reader",
+      [VXM_READER_ARG_MODULE] = module,
+      [VXM_READER_ARG_PARENT] = parent,
+      [VXM_READER_ARG_NAME] = c->request->name,
+      [VXM_READER_ARG_HINT] = c->request->hint,
+      [VXM_READER_ARG_DEFLECTION] = deflection,
+      [VXM_READER_ARG_LOOK] = c->has_look ? "1" : "0",
+      [VXM_READER_ARG_MEMORY] = memory,
+      [VXM_READER_ARG_MEMORY_MAX] = memory_max,
+      [VXM_READER_ARG_SECONDS] = seconds,
   };
   /* posix_spawn takes writable strings for history's sake, and leaves them alone. */
   vxm_status status =
@@ -233,7 +233,7 @@ static vxm_status converse(vxm_process *reader, conversation *c, vxm_wire_listen
   return status == VXM_ERROR_IO ? explain_end(end, c, is_late, listener->attempt, error) : status;
 }
 
-static vxm_status read_apart(conversation *c, vxm_wire_listener *listener, const vxm_module_need *need,
+static vxm_status run_reader(conversation *c, vxm_wire_listener *listener, const vxm_module_need *need,
                              vxm_error *error) {
   char module[VXM_MODULE_PATH_MAX], program[VXM_MODULE_PATH_MAX];
   vxm_process reader;
@@ -255,7 +255,7 @@ vxm_status vxm_reader_process_mesh(vxm_soup *soup, const vxm_module_need *need,
                     .references = references,
                     .has_look = soup->appearance != NULL};
   vxm_wire_listener listener = {.soup = soup, .answer = answer, .payload = &c};
-  vxm_status status = read_apart(&c, &listener, need, error);
+  vxm_status status = run_reader(&c, &listener, need, error);
   if (status != VXM_OK)
     return status;
   /* What was refused comes first: there is room for so many lines only. */
@@ -271,7 +271,7 @@ vxm_status vxm_reader_process_grid(vxm_voxel_sink *sink, vxm_warnings *warnings,
                                    vxm_error *error) {
   conversation c = {.context = context, .request = request};
   vxm_wire_listener listener = {.sink = sink};
-  vxm_status status = read_apart(&c, &listener, need, error);
+  vxm_status status = run_reader(&c, &listener, need, error);
   if (status == VXM_OK)
     add_warnings(warnings, &listener.warnings);
   return status;

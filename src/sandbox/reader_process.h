@@ -42,17 +42,17 @@ vxm_status vxm_reader_process_grid(vxm_voxel_sink *sink, vxm_warnings *warnings,
 /** The arguments of voxmend-reader, in their order. Over the channel it gets the size of the file in 64 bits,
  * and its bytes. */
 enum {
-  VXM_APART_PROGRAM,
-  VXM_APART_MODULE, /**< path */
-  VXM_APART_PARENT, /**< number of our process */
-  VXM_APART_NAME,   /**< of the file */
-  VXM_APART_HINT,
-  VXM_APART_DEFLECTION, /**< %a */
-  VXM_APART_LOOK,       /**< "1" if the appearance of a mesh is wanted, else "0" */
-  VXM_APART_MEMORY,     /**< bytes that it may hold */
-  VXM_APART_MEMORY_MAX, /**< to which we may raise that, as further files come */
-  VXM_APART_SECONDS,    /**< of computing */
-  VXM_APART_ARGUMENTS
+  VXM_READER_ARG_PROGRAM,
+  VXM_READER_ARG_MODULE, /**< path */
+  VXM_READER_ARG_PARENT, /**< number of our process */
+  VXM_READER_ARG_NAME,   /**< of the file */
+  VXM_READER_ARG_HINT,
+  VXM_READER_ARG_DEFLECTION, /**< %a */
+  VXM_READER_ARG_LOOK,       /**< "1" if the appearance of a mesh is wanted, else "0" */
+  VXM_READER_ARG_MEMORY,     /**< bytes that it may hold */
+  VXM_READER_ARG_MEMORY_MAX, /**< to which we may raise that, as further files come */
+  VXM_READER_ARG_SECONDS,    /**< of computing */
+  VXM_READER_ARGS
 };
 
 #endif

@@ -12,7 +12,7 @@
 #include "base/open_beneath.h"
 
 /** More files than any model has; a file that asks for so many wants something else. */
-enum { ASKED_MAX = 4096, NOTED_MAX = VXM_NOTES_MAX / 2 };
+enum { ASKED_MAX = 4096, NOTED_MAX = VXM_WARNINGS_MAX / 2 };
 
 /** Why nothing is opened at all, or NULL. */
 static const char *rule(const vxm_references *references) {
@@ -80,7 +80,7 @@ static void describe(char *out, size_t size, const char *name, const char *reaso
 
 /** Libraries may ask for the same file again, also by another way to say the same. */
 static void note_refusal(vxm_references *references, const char *name, const char *reason) {
-  char line[VXM_NOTE_LENGTH];
+  char line[VXM_WARNING_LENGTH];
   while (name[0] == '.' && name[1] == '/')
     name += 1 + strspn(name + 1, "/");
   describe(line, sizeof line, name, reason);

@@ -17,8 +17,8 @@ typedef struct vxm_references {
   bool is_inside;   /**< the mesh file itself lies in it: not somewhere else, at the end of a link */
   uint64_t asked;   /**< how many times */
   uint64_t refused; /**< of them */
-  char first[VXM_NOTE_LENGTH]; /**< the first that was refused, and why */
-  vxm_warnings warnings;       /**< a line for each that was refused, as far as there is room */
+  char first[VXM_WARNING_LENGTH]; /**< the first that was refused, and why */
+  vxm_warnings warnings;          /**< a line for each that was refused, as far as there is room */
 } vxm_references;
 
 /** For a mesh that is in memory. */
@@ -26,7 +26,7 @@ typedef struct vxm_references {
   { .folder = -1 }
 
 /**
- * Opens what is asked for, or warnings that it is refused.
+ * Opens what is asked for, or notes in a warning that it is refused.
  *
  * @param largest bytes that may be handed over
  * @return a descriptor of a regular file with its size, or -1

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "sandbox/parcel.h"
+#include "sandbox/wire_message.h"
 
 /** Ahead of the arrays, which follow in the order of these counts; behind each image its bytes. */
 typedef struct look_counts {
@@ -22,18 +22,19 @@ bool vxm_wire_send_appearance(int channel, const vxm_appearance *look) {
                               .images = look->image_count,
                               .is_product = look->is_product};
   bool sent =
-      vxm_parcel_put(channel, &counts, sizeof counts) &&
-      vxm_parcel_put(channel, look->vertex_colors, look->vertex_color_count * sizeof *look->vertex_colors) &&
-      vxm_parcel_put(channel, look->face_colors, look->face_color_count * sizeof *look->face_colors) &&
-      vxm_parcel_put(channel, look->corner_uvs, look->corner_uv_count * sizeof *look->corner_uvs) &&
-      vxm_parcel_put(channel, look->face_materials,
-                     look->face_material_count * sizeof *look->face_materials) &&
-      vxm_parcel_put(channel, look->materials, look->material_count * sizeof *look->materials);
+      vxm_message_send(channel, &counts, sizeof counts) &&
+      vxm_message_send(channel, look->vertex_colors,
+                       look->vertex_color_count * sizeof *look->vertex_colors) &&
+      vxm_message_send(channel, look->face_colors, look->face_color_count * sizeof *look->face_colors) &&
+      vxm_message_send(channel, look->corner_uvs, look->corner_uv_count * sizeof *look->corner_uvs) &&
+      vxm_message_send(channel, look->face_materials,
+                       look->face_material_count * sizeof *look->face_materials) &&
+      vxm_message_send(channel, look->materials, look->material_count * sizeof *look->materials);
   for (size_t i = 0; i < look->image_count && sent; i++) {
     vxm_image image = look->images[i];
     image.bytes = NULL;
-    sent = vxm_parcel_put(channel, &image, sizeof image) &&
-           vxm_parcel_put(channel, look->images[i].bytes, (size_t)image.size);
+    sent = vxm_message_send(channel, &image, sizeof image) &&
+           vxm_message_send(channel, look->images[i].bytes, (size_t)image.size);
   }
   return sent;
 }
@@ -62,7 +63,7 @@ static bool is_sound_material(vxm_material *material, uint64_t images) {
   memcpy(&has_color, &material->has_color, 1); /* as a byte: a bool may hold anything */
   for (int c = 0; c < 3; c++)
     good = good && isfinite(material->color[c]);
-  vxm_parcel_tame(material->name, sizeof material->name);
+  vxm_message_sanitize(material->name, sizeof material->name);
   return good && has_color <= 1;
 }
 
@@ -72,13 +73,13 @@ static vxm_status receive_image(vxm_image *image, vxm_context *context, vxm_proc
   image->bytes = NULL;
   if (status != VXM_OK)
     return status;
-  vxm_parcel_tame(image->name, sizeof image->name);
-  vxm_parcel_tame(image->failure, sizeof image->failure);
+  vxm_message_sanitize(image->name, sizeof image->name);
+  vxm_message_sanitize(image->failure, sizeof image->failure);
   uint64_t pixels = (uint64_t)image->width * image->height;
   bool is_decoded = image->width > 0 || image->height > 0;
   if ((is_decoded && (pixels == 0 || pixels > VXM_PIXELS_MAX || image->size != 4 * pixels)) ||
       image->size > UINT64_C(1) << 40)
-    return vxm_parcel_damaged(error);
+    return vxm_message_damaged(error);
   size_t size = 0;
   return receive_array((void **)&image->bytes, &size, image->size, 1, context, sender, error);
 }
@@ -113,7 +114,7 @@ vxm_status vxm_wire_receive_appearance(vxm_soup *soup, vxm_process *sender, vxm_
       (counts.corner_uvs && counts.corner_uvs != soup->corner_count) ||
       counts.face_materials > soup->face_count || counts.materials > MOST || counts.images > MOST ||
       counts.is_product > 1)
-    return vxm_parcel_damaged(error);
+    return vxm_message_damaged(error);
   look->is_product = counts.is_product;
   status = receive_array((void **)&look->vertex_colors, &look->vertex_color_count, counts.vertex_colors,
                          sizeof *look->vertex_colors, context, sender, error);
@@ -135,6 +136,6 @@ vxm_status vxm_wire_receive_appearance(vxm_soup *soup, vxm_process *sender, vxm_
   for (size_t m = 0; m < look->material_count && status == VXM_OK; m++)
     good = is_sound_material(&look->materials[m], counts.images) && good;
   if (status == VXM_OK && !good)
-    status = vxm_parcel_damaged(error);
+    status = vxm_message_damaged(error);
   return status == VXM_OK ? receive_images(look, counts.images, sender, error) : status;
 }

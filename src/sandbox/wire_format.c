@@ -6,54 +6,36 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "sandbox/parcel.h"
 #include "sandbox/wire_appearance.h"
+#include "sandbox/wire_message.h"
 
 /** Ahead of the arrays of a soup, which follow in the order of these counts. */
-typedef struct parcel_counts {
+typedef struct soup_counts {
   uint64_t vertices, faces, corners;
   uint64_t tags, tag_bytes; /**< each name ends with a zero byte */
   uint64_t warnings;
-} parcel_counts;
+} soup_counts;
 
 /* ---- Sending ---- */
 
-bool vxm_parcel_put(int channel, const void *data, size_t size) {
-  const char *at = data;
-  while (size > 0) {
-    ssize_t written = write(channel, at, size);
-    if (written < 0 && errno == EINTR)
-      continue;
-    if (written <= 0)
-      return false;
-    at += written;
-    size -= (size_t)written;
-  }
-  return true;
-}
-
-bool vxm_parcel_put_kind(int channel, vxm_parcel_kind kind) {
-  uint64_t word = (uint64_t)kind;
-  return vxm_parcel_put(channel, &word, sizeof word);
-}
-
 bool vxm_wire_send_progress(int channel, double fraction) {
-  return vxm_parcel_put_kind(channel, VXM_PARCEL_PROGRESS) &&
-         vxm_parcel_put(channel, &fraction, sizeof fraction);
+  return vxm_message_send_kind(channel, VXM_MESSAGE_PROGRESS) &&
+         vxm_message_send(channel, &fraction, sizeof fraction);
 }
 
 bool vxm_wire_send_failure(int channel, const vxm_error *error) {
-  return vxm_parcel_put_kind(channel, VXM_PARCEL_FAILURE) && vxm_parcel_put(channel, error, sizeof *error);
+  return vxm_message_send_kind(channel, VXM_MESSAGE_FAILURE) &&
+         vxm_message_send(channel, error, sizeof *error);
 }
 
 bool vxm_wire_send_warning(int channel, const char *text) {
-  char line[VXM_NOTE_LENGTH] = "";
+  char line[VXM_WARNING_LENGTH] = "";
   strncpy(line, text, sizeof line - 1);
-  return vxm_parcel_put_kind(channel, VXM_PARCEL_WARNING) && vxm_parcel_put(channel, line, sizeof line);
+  return vxm_message_send_kind(channel, VXM_MESSAGE_WARNING) && vxm_message_send(channel, line, sizeof line);
 }
 
 bool vxm_wire_send_attempt(int channel, int64_t call) {
-  return vxm_parcel_put_kind(channel, VXM_PARCEL_ATTEMPT) && vxm_parcel_put(channel, &call, sizeof call);
+  return vxm_message_send_kind(channel, VXM_MESSAGE_ATTEMPT) && vxm_message_send(channel, &call, sizeof call);
 }
 
 bool vxm_wire_get(int channel, void *data, size_t size) {
@@ -76,30 +58,31 @@ bool vxm_wire_get_size(int channel, uint64_t *size) {
 
 bool vxm_wire_ask(int channel, const char *name) {
   uint64_t length = strlen(name);
-  return vxm_parcel_put_kind(channel, VXM_PARCEL_REFERENCE) &&
-         vxm_parcel_put(channel, &length, sizeof length) && vxm_parcel_put(channel, name, length);
+  return vxm_message_send_kind(channel, VXM_MESSAGE_REFERENCE) &&
+         vxm_message_send(channel, &length, sizeof length) && vxm_message_send(channel, name, length);
 }
 
 bool vxm_wire_send_soup(int channel, const vxm_soup *soup) {
-  parcel_counts counts = {.vertices = soup->vertex_count,
-                          .faces = soup->face_count,
-                          .corners = soup->corner_count,
-                          .tags = soup->tag_count,
-                          .warnings = (uint64_t)soup->warnings.count};
+  soup_counts counts = {.vertices = soup->vertex_count,
+                        .faces = soup->face_count,
+                        .corners = soup->corner_count,
+                        .tags = soup->tag_count,
+                        .warnings = (uint64_t)soup->warnings.count};
   for (size_t t = 0; t < soup->tag_count; t++)
     counts.tag_bytes += strlen(soup->tags[t]) + 1;
-  if (!vxm_parcel_put_kind(channel, VXM_PARCEL_SOUP) || !vxm_parcel_put(channel, &counts, sizeof counts) ||
-      !vxm_parcel_put(channel, soup->positions, 3 * soup->vertex_count * sizeof *soup->positions) ||
-      !vxm_parcel_put(channel, soup->offsets, (soup->face_count + 1) * sizeof *soup->offsets) ||
-      !vxm_parcel_put(channel, soup->indices, soup->corner_count * sizeof *soup->indices))
+  if (!vxm_message_send_kind(channel, VXM_MESSAGE_SOUP) ||
+      !vxm_message_send(channel, &counts, sizeof counts) ||
+      !vxm_message_send(channel, soup->positions, 3 * soup->vertex_count * sizeof *soup->positions) ||
+      !vxm_message_send(channel, soup->offsets, (soup->face_count + 1) * sizeof *soup->offsets) ||
+      !vxm_message_send(channel, soup->indices, soup->corner_count * sizeof *soup->indices))
     return false;
   if (soup->tag_count > 0 &&
-      !vxm_parcel_put(channel, soup->face_tags, soup->face_count * sizeof *soup->face_tags))
+      !vxm_message_send(channel, soup->face_tags, soup->face_count * sizeof *soup->face_tags))
     return false;
   for (size_t t = 0; t < soup->tag_count; t++)
-    if (!vxm_parcel_put(channel, soup->tags[t], strlen(soup->tags[t]) + 1))
+    if (!vxm_message_send(channel, soup->tags[t], strlen(soup->tags[t]) + 1))
       return false;
-  if (!vxm_parcel_put(channel, soup->warnings.text, counts.warnings * sizeof *soup->warnings.text))
+  if (!vxm_message_send(channel, soup->warnings.text, counts.warnings * sizeof *soup->warnings.text))
     return false;
   return !soup->appearance || vxm_wire_send_appearance(channel, soup->appearance);
 }
@@ -110,31 +93,20 @@ vxm_status vxm_wire_send_size(vxm_process *receiver, uint64_t size, vxm_error *e
   return vxm_process_send(receiver, &size, sizeof size, error);
 }
 
-vxm_status vxm_parcel_damaged(vxm_error *error) {
-  return vxm_fail(error, VXM_ERROR_FORMAT, "what the reading process sent is damaged");
-}
-
-void vxm_parcel_tame(char *text, size_t size) {
-  text[size - 1] = '\0';
-  for (; *text; text++)
-    if ((unsigned char)*text < ' ')
-      *text = ' ';
-}
-
 static vxm_status receive_failure(vxm_process *sender, vxm_error *error) {
   vxm_error sent = VXM_ERROR_INIT;
   vxm_status status = vxm_process_receive(sender, &sent, sizeof sent, error);
   if (status != VXM_OK)
     return status;
-  vxm_parcel_tame(sent.text, sizeof sent.text);
-  vxm_parcel_tame(sent.file, sizeof sent.file);
+  vxm_message_sanitize(sent.text, sizeof sent.text);
+  vxm_message_sanitize(sent.file, sizeof sent.file);
   if (sent.code <= VXM_OK || sent.code > VXM_ERROR_CANCELLED || !sent.text[0])
-    return vxm_parcel_damaged(error);
+    return vxm_message_damaged(error);
   vxm_error_pass(error, &sent);
   return sent.code;
 }
 
-static vxm_status receive_arrays(vxm_soup *soup, vxm_process *sender, const parcel_counts *counts,
+static vxm_status receive_arrays(vxm_soup *soup, vxm_process *sender, const soup_counts *counts,
                                  vxm_error *error) {
   vxm_status status =
       vxm_soup_reserve(soup, (size_t)counts->vertices, (size_t)counts->faces, (size_t)counts->corners, error);
@@ -156,7 +128,7 @@ static vxm_status receive_arrays(vxm_soup *soup, vxm_process *sender, const parc
     good &= soup->indices[c] < counts->vertices;
   if (!good) {
     soup->offsets[0] = 0;
-    return vxm_parcel_damaged(error);
+    return vxm_message_damaged(error);
   }
   soup->vertex_count = (size_t)counts->vertices;
   soup->face_count = (size_t)counts->faces;
@@ -165,22 +137,21 @@ static vxm_status receive_arrays(vxm_soup *soup, vxm_process *sender, const parc
 }
 
 /** Adds the names in a block of `size` bytes, the last of which is zero. */
-static vxm_status take_names(vxm_soup *soup, const char *names, const parcel_counts *counts,
-                             vxm_error *error) {
+static vxm_status take_names(vxm_soup *soup, const char *names, const soup_counts *counts, vxm_error *error) {
   vxm_status status = VXM_OK;
   const char *end = names + counts->tag_bytes;
   for (uint64_t t = 0; t < counts->tags && status == VXM_OK; t++) {
     if (names == end)
-      return vxm_parcel_damaged(error);
+      return vxm_message_damaged(error);
     size_t length = strlen(names);
     uint32_t tag;
     status = vxm_soup_add_tag(soup, names, length, &tag, error);
     names += length + 1;
   }
-  return status == VXM_OK && names != end ? vxm_parcel_damaged(error) : status;
+  return status == VXM_OK && names != end ? vxm_message_damaged(error) : status;
 }
 
-static vxm_status receive_tags(vxm_soup *soup, vxm_process *sender, const parcel_counts *counts,
+static vxm_status receive_tags(vxm_soup *soup, vxm_process *sender, const soup_counts *counts,
                                vxm_error *error) {
   if (counts->tags == 0)
     return VXM_OK;
@@ -199,21 +170,21 @@ static vxm_status receive_tags(vxm_soup *soup, vxm_process *sender, const parcel
   for (uint64_t f = 0; good && f < counts->faces; f++)
     good = soup->face_tags[f] < counts->tags;
   if (status == VXM_OK)
-    status = good ? take_names(soup, names, counts, error) : vxm_parcel_damaged(error);
+    status = good ? take_names(soup, names, counts, error) : vxm_message_damaged(error);
   vxm_free(soup->context, names);
   return status;
 }
 
 static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *error) {
-  parcel_counts counts;
+  soup_counts counts;
   vxm_status status = vxm_process_receive(sender, &counts, sizeof counts, error);
   if (status != VXM_OK)
     return status;
   /* What no memory holds is not asked for either, so that products of sizes stay in range. */
   const uint64_t most = UINT64_C(1) << 40;
   if (counts.vertices > VXM_VERTICES_MAX || counts.faces > most || counts.corners > most ||
-      counts.tags > UINT32_MAX || counts.tag_bytes > most || counts.warnings > VXM_NOTES_MAX)
-    return vxm_parcel_damaged(error);
+      counts.tags > UINT32_MAX || counts.tag_bytes > most || counts.warnings > VXM_WARNINGS_MAX)
+    return vxm_message_damaged(error);
   status = receive_arrays(soup, sender, &counts, error);
   if (status == VXM_OK)
     status = receive_tags(soup, sender, &counts, error);
@@ -222,9 +193,9 @@ static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *e
                                  (size_t)counts.warnings * sizeof *soup->warnings.text, error);
   for (uint64_t n = 0; status == VXM_OK && n < counts.warnings; n++)
     if (soup->warnings.text[n][0])
-      vxm_parcel_tame(soup->warnings.text[n], sizeof soup->warnings.text[n]);
+      vxm_message_sanitize(soup->warnings.text[n], sizeof soup->warnings.text[n]);
     else
-      status = vxm_parcel_damaged(error);
+      status = vxm_message_damaged(error);
   if (status == VXM_OK)
     soup->warnings.count = (int)counts.warnings;
   if (status == VXM_OK && soup->appearance)
@@ -245,25 +216,25 @@ static vxm_status receive_reference(vxm_process *sender, vxm_wire_listener *list
   uint64_t length;
   vxm_status status = vxm_process_receive(sender, &length, sizeof length, error);
   if (status == VXM_OK && length > VXM_WIRE_NAME_MAX)
-    status = vxm_parcel_damaged(error);
+    status = vxm_message_damaged(error);
   if (status == VXM_OK)
     status = vxm_process_receive(sender, name, (size_t)length, error);
   if (status != VXM_OK)
     return status;
   name[length] = '\0';
   if (strlen(name) != length)
-    return vxm_parcel_damaged(error);
+    return vxm_message_damaged(error);
   return listener->answer(listener->payload, sender, name, error);
 }
 
 static vxm_status receive_warning(vxm_process *sender, vxm_wire_listener *listener, vxm_error *error) {
-  char line[VXM_NOTE_LENGTH];
+  char line[VXM_WARNING_LENGTH];
   vxm_status status = vxm_process_receive(sender, line, sizeof line, error);
   if (status != VXM_OK)
     return status;
   line[sizeof line - 1] = '\0';
   if (line[0] == '\0')
-    return vxm_parcel_damaged(error);
+    return vxm_message_damaged(error);
   vxm_warn(&listener->warnings, "%s", line);
   return VXM_OK;
 }
@@ -276,19 +247,19 @@ static vxm_status receive_attempt(vxm_process *sender, vxm_wire_listener *listen
   return status == VXM_OK ? VXM_ERROR_IO : status;
 }
 
-/** A parcel after which others may come. */
+/** A message after which others may come. */
 static vxm_status receive_between(uint64_t kind, vxm_process *sender, vxm_wire_listener *listener,
                                   vxm_wire_arrival *arrival, vxm_error *error) {
   switch (kind) {
-  case VXM_PARCEL_PROGRESS:
+  case VXM_MESSAGE_PROGRESS:
     return receive_progress(sender, error);
-  case VXM_PARCEL_REFERENCE:
-    return listener->answer ? receive_reference(sender, listener, error) : vxm_parcel_damaged(error);
-  case VXM_PARCEL_WARNING:
+  case VXM_MESSAGE_REFERENCE:
+    return listener->answer ? receive_reference(sender, listener, error) : vxm_message_damaged(error);
+  case VXM_MESSAGE_WARNING:
     return receive_warning(sender, listener, error);
   default:
     return listener->sink ? vxm_wire_receive_voxels(listener->sink, arrival, kind, sender, error)
-                          : vxm_parcel_damaged(error);
+                          : vxm_message_damaged(error);
   }
 }
 
@@ -302,13 +273,13 @@ vxm_status vxm_wire_receive(vxm_process *sender, vxm_wire_listener *listener, vx
     vxm_status status = vxm_process_receive(sender, &kind, sizeof kind, error);
     if (status != VXM_OK)
       return status;
-    if (kind == VXM_PARCEL_ATTEMPT)
+    if (kind == VXM_MESSAGE_ATTEMPT)
       return receive_attempt(sender, listener, error);
-    if (kind == VXM_PARCEL_FAILURE) {
+    if (kind == VXM_MESSAGE_FAILURE) {
       listener->has_failed = true;
       return receive_failure(sender, error);
     }
-    if (kind == VXM_PARCEL_SOUP && listener->soup)
+    if (kind == VXM_MESSAGE_SOUP && listener->soup)
       return receive_soup(listener->soup, sender, error);
     status = receive_between(kind, sender, listener, &arrival, error);
     if (status != VXM_OK || arrival.is_whole || (listener->sink && listener->sink->is_full))

@@ -39,33 +39,35 @@ static vxm_status send_text(void *payload, const char *key, size_t key_size, con
   if (key_size > VXM_SINK_TEXT_MAX || value_size > VXM_SINK_TEXT_MAX - key_size)
     return VXM_OK;
   return sent(s,
-              vxm_parcel_put_kind(s->channel, VXM_PARCEL_TEXT) &&
-                  vxm_parcel_put(s->channel, &sizes, sizeof sizes) &&
-                  vxm_parcel_put(s->channel, key, key_size) && vxm_parcel_put(s->channel, value, value_size),
+              vxm_message_send_kind(s->channel, VXM_MESSAGE_TEXT) &&
+                  vxm_message_send(s->channel, &sizes, sizeof sizes) &&
+                  vxm_message_send(s->channel, key, key_size) &&
+                  vxm_message_send(s->channel, value, value_size),
               error);
 }
 
 static vxm_status send_grid(void *payload, const vxm_sink_grid *grid, vxm_error *error) {
   vxm_wire_sender *s = payload;
-  return sent(
-      s, vxm_parcel_put_kind(s->channel, VXM_PARCEL_GRID) && vxm_parcel_put(s->channel, grid, sizeof *grid),
-      error);
+  return sent(s,
+              vxm_message_send_kind(s->channel, VXM_MESSAGE_GRID) &&
+                  vxm_message_send(s->channel, grid, sizeof *grid),
+              error);
 }
 
 static vxm_status send_extent(void *payload, const vxm_sink_extent *extent, vxm_error *error) {
   vxm_wire_sender *s = payload;
   return sent(s,
-              vxm_parcel_put_kind(s->channel, VXM_PARCEL_EXTENT) &&
-                  vxm_parcel_put(s->channel, extent, sizeof *extent),
+              vxm_message_send_kind(s->channel, VXM_MESSAGE_EXTENT) &&
+                  vxm_message_send(s->channel, extent, sizeof *extent),
               error);
 }
 
 static void flush(vxm_wire_sender *s) {
   uint64_t size = s->used;
   if (size > 0 && !s->is_gone)
-    s->is_gone =
-        !(vxm_parcel_put_kind(s->channel, VXM_PARCEL_BLOCKS) &&
-          vxm_parcel_put(s->channel, &size, sizeof size) && vxm_parcel_put(s->channel, s->batch, s->used));
+    s->is_gone = !(vxm_message_send_kind(s->channel, VXM_MESSAGE_BLOCKS) &&
+                   vxm_message_send(s->channel, &size, sizeof size) &&
+                   vxm_message_send(s->channel, s->batch, s->used));
   s->used = 0;
 }
 
@@ -103,8 +105,8 @@ static void send_cube(void *payload, const int64_t at[3], int64_t side, float nu
 static vxm_status send_array(void *payload, const vxm_sink_array *array, vxm_error *error) {
   vxm_wire_sender *s = payload;
   return sent(s,
-              vxm_parcel_put_kind(s->channel, VXM_PARCEL_ARRAY) &&
-                  vxm_parcel_put(s->channel, array, sizeof *array),
+              vxm_message_send_kind(s->channel, VXM_MESSAGE_ARRAY) &&
+                  vxm_message_send(s->channel, array, sizeof *array),
               error);
 }
 
@@ -112,8 +114,9 @@ static vxm_status send_values(void *payload, const void *values, size_t size, vx
   vxm_wire_sender *s = payload;
   for (const char *at = values; size > 0 && !s->is_gone;) {
     uint64_t part = size < VXM_WIRE_BATCH ? size : VXM_WIRE_BATCH;
-    s->is_gone = !(vxm_parcel_put_kind(s->channel, VXM_PARCEL_VALUES) &&
-                   vxm_parcel_put(s->channel, &part, sizeof part) && vxm_parcel_put(s->channel, at, part));
+    s->is_gone =
+        !(vxm_message_send_kind(s->channel, VXM_MESSAGE_VALUES) &&
+          vxm_message_send(s->channel, &part, sizeof part) && vxm_message_send(s->channel, at, part));
     at += part;
     size -= part;
   }
@@ -134,7 +137,7 @@ vxm_voxel_sink vxm_wire_sink(vxm_wire_sender *sender) {
 
 bool vxm_wire_send_end(vxm_wire_sender *sender) {
   flush(sender);
-  return !sender->is_gone && vxm_parcel_put_kind(sender->channel, VXM_PARCEL_END);
+  return !sender->is_gone && vxm_message_send_kind(sender->channel, VXM_MESSAGE_END);
 }
 
 /* ---- Receiving ---- */
@@ -145,7 +148,7 @@ static vxm_status receive_text(vxm_voxel_sink *sink, vxm_process *sender, vxm_er
   if (status != VXM_OK)
     return status;
   if (sizes.key > VXM_SINK_TEXT_MAX || sizes.value > VXM_SINK_TEXT_MAX - sizes.key)
-    return vxm_parcel_damaged(error);
+    return vxm_message_damaged(error);
   vxm_error local = VXM_ERROR_INIT;
   size_t key = (size_t)sizes.key, value = (size_t)sizes.value;
   char *both = vxm_alloc(sender->context, key + value, 1, &local);
@@ -171,8 +174,8 @@ static vxm_status receive_grid(vxm_voxel_sink *sink, vxm_process *sender, vxm_er
   if (status != VXM_OK)
     return status;
   if (!is_bool(&grid.is_numbers) || !is_bool(&grid.has_space) || grid.grids == 0 || grid.at > INT64_MAX)
-    return vxm_parcel_damaged(error);
-  vxm_parcel_tame(grid.name, sizeof grid.name);
+    return vxm_message_damaged(error);
+  vxm_message_sanitize(grid.name, sizeof grid.name);
   return sink->grid(sink->payload, &grid, error);
 }
 
@@ -189,7 +192,7 @@ static vxm_status receive_extent(vxm_voxel_sink *sink, vxm_process *sender, vxm_
   bool is_sound = is_bool(&extent.is_empty);
   for (int a = 0; a < 3; a++)
     is_sound &= is_place(extent.low[a]) && is_place(extent.high[a]) && extent.low[a] <= extent.high[a];
-  return is_sound ? sink->extent(sink->payload, &extent, error) : vxm_parcel_damaged(error);
+  return is_sound ? sink->extent(sink->payload, &extent, error) : vxm_message_damaged(error);
 }
 
 /** Hands over one block; false if it is none. */
@@ -216,12 +219,12 @@ static bool take_block(vxm_voxel_sink *sink, const block_head *head, const unsig
   }
 }
 
-/** How many bytes a parcel has, and these: a batch at most. */
+/** How many bytes a message has, and these: a batch at most. */
 static vxm_status receive_batch(unsigned char batch[VXM_WIRE_BATCH], uint64_t *size, vxm_process *sender,
                                 vxm_error *error) {
   vxm_status status = vxm_process_receive(sender, size, sizeof *size, error);
   if (status == VXM_OK && *size > VXM_WIRE_BATCH)
-    status = vxm_parcel_damaged(error);
+    status = vxm_message_damaged(error);
   return status == VXM_OK ? vxm_process_receive(sender, batch, (size_t)*size, error) : status;
 }
 
@@ -232,11 +235,11 @@ static vxm_status receive_blocks(vxm_voxel_sink *sink, vxm_process *sender, vxm_
   for (size_t at = 0; status == VXM_OK && at < size;) {
     block_head head;
     if (size - at < sizeof head)
-      return vxm_parcel_damaged(error);
+      return vxm_message_damaged(error);
     memcpy(&head, batch + at, sizeof head);
     at += sizeof head;
     if (size - at < voxel_bytes(head.kind) || !take_block(sink, &head, batch + at))
-      return vxm_parcel_damaged(error);
+      return vxm_message_damaged(error);
     at += voxel_bytes(head.kind);
   }
   return status;
@@ -250,7 +253,7 @@ static vxm_status receive_array(vxm_voxel_sink *sink, vxm_process *sender, vxm_e
   bool is_sound = array.scalar <= VXM_INT64 && array.is_color <= 1 && array.has_place <= 1;
   for (int a = 0; a < 3; a++)
     is_sound &= array.shape[a] >= 1 && is_place(array.shape[a]);
-  return is_sound ? sink->array(sink->payload, &array, error) : vxm_parcel_damaged(error);
+  return is_sound ? sink->array(sink->payload, &array, error) : vxm_message_damaged(error);
 }
 
 static vxm_status receive_values(vxm_voxel_sink *sink, vxm_process *sender, vxm_error *error) {
@@ -262,24 +265,24 @@ static vxm_status receive_values(vxm_voxel_sink *sink, vxm_process *sender, vxm_
 
 vxm_status vxm_wire_receive_voxels(vxm_voxel_sink *sink, vxm_wire_arrival *arrival, uint64_t kind,
                                    vxm_process *sender, vxm_error *error) {
-  if (kind == VXM_PARCEL_TEXT && !arrival->has_grid)
+  if (kind == VXM_MESSAGE_TEXT && !arrival->has_grid)
     return receive_text(sink, sender, error);
-  if (kind == VXM_PARCEL_GRID && !arrival->has_grid && sink->grid) {
+  if (kind == VXM_MESSAGE_GRID && !arrival->has_grid && sink->grid) {
     arrival->has_grid = true;
     return receive_grid(sink, sender, error);
   }
-  if (kind == VXM_PARCEL_EXTENT && arrival->has_grid && !arrival->has_array && !arrival->has_extent) {
+  if (kind == VXM_MESSAGE_EXTENT && arrival->has_grid && !arrival->has_array && !arrival->has_extent) {
     arrival->has_extent = true;
     return receive_extent(sink, sender, error);
   }
-  if (kind == VXM_PARCEL_BLOCKS && arrival->has_extent)
+  if (kind == VXM_MESSAGE_BLOCKS && arrival->has_extent)
     return receive_blocks(sink, sender, error);
-  if (kind == VXM_PARCEL_ARRAY && !arrival->has_grid && sink->array) {
+  if (kind == VXM_MESSAGE_ARRAY && !arrival->has_grid && sink->array) {
     arrival->has_grid = arrival->has_array = true;
     return receive_array(sink, sender, error);
   }
-  if (kind == VXM_PARCEL_VALUES && arrival->has_array)
+  if (kind == VXM_MESSAGE_VALUES && arrival->has_array)
     return receive_values(sink, sender, error);
-  arrival->is_whole = kind == VXM_PARCEL_END && (arrival->has_extent || arrival->has_array);
-  return arrival->is_whole ? VXM_OK : vxm_parcel_damaged(error);
+  arrival->is_whole = kind == VXM_MESSAGE_END && (arrival->has_extent || arrival->has_array);
+  return arrival->is_whole ? VXM_OK : vxm_message_damaged(error);
 }

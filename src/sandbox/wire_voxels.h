@@ -4,8 +4,8 @@
 #define VXM_SANDBOX_WIRE_VOXELS_H
 
 #include "base/process.h"
-#include "sandbox/parcel.h"
 #include "sandbox/voxel_sink.h"
+#include "sandbox/wire_message.h"
 
 /** Bytes of the blocks that go over together. */
 enum { VXM_WIRE_BATCH = 1 << 15 };
@@ -33,8 +33,8 @@ typedef struct vxm_wire_arrival {
 } vxm_wire_arrival;
 
 /**
- * Takes what stands behind the word for a kind of parcel, and hands it to the sink. Sizes, order and places
- * are checked; what the numbers say is for the sink to check.
+ * Takes what stands behind the word for the kind of a message, and hands it to the sink. Sizes, order and
+ * places are checked; what the numbers say is for the sink to check.
  *
  * @return what the sink returns; VXM_ERROR_FORMAT if it is no part of a grid, or out of order; VXM_ERROR_IO,
  *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED

@@ -62,10 +62,10 @@ VXM_API const char *vxm_version(void);
 typedef enum vxm_status {
   VXM_OK = 0,         /**< done */
   VXM_ERROR_ARGUMENT, /**< an argument is out of its range: mend the call */
-  VXM_ERROR_IO,       /**< the system refused to open, read, write or rename: check path, rights and space */
-  VXM_ERROR_FORMAT,   /**< the content is not a known format or is damaged beyond reading: mend the file */
-  VXM_ERROR_EMPTY,    /**< there is nothing to work on (no face): check the input */
-  VXM_ERROR_MEMORY,   /**< the system has no memory left: free some, or lower the resolution */
+  VXM_ERROR_IO, /**< the system refused to open, read, write or rename: check path, permissions and space */
+  VXM_ERROR_FORMAT, /**< the content is not a known format or is damaged beyond reading: mend the file */
+  VXM_ERROR_EMPTY,  /**< there is nothing to work on (no face): check the input */
+  VXM_ERROR_MEMORY, /**< the system has no memory left: free some, or lower the resolution */
   VXM_ERROR_MEMORY_LIMIT, /**< the context's limit would be exceeded: raise it, or lower the resolution */
   VXM_ERROR_RANGE, /**< a size or coordinate is beyond what can be computed: scale down or choose another grid
                     */
@@ -164,10 +164,10 @@ VXM_API uint64_t vxm_context_peak_bytes(const vxm_context *context);
 /*
  * A file that is written appears under its name when it is complete, and replaces what was there. Until then
  * it has no name where the file system can do that (O_TMPFILE), and only its user can read it. A new file has
- * the rights that the umask or its folder's default list gives; one that replaces a file of the same owner
- * keeps that one's, but never setuid, setgid and sticky bits. Links are followed, but no other user's in a
- * folder that everybody may write to. What goes to "-" (standard output), a pipe or a device is written as it
- * comes.
+ * the permissions that the umask or its folder's default ACL gives; one that replaces a file of the same
+ * owner keeps that one's, but never setuid, setgid and sticky bits. Links are followed, but no other user's
+ * in a folder that everybody may write to. What goes to "-" (standard output), a pipe or a device is written
+ * as it comes.
  */
 
 /**

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * @file voxmend/carve.h
- * Material removal: a tool on its way through a grid or an octree.
+ * Material removal: what a tool cuts of a grid or an octree along its path.
  */
 #ifndef VOXMEND_CARVE_H
 #define VOXMEND_CARVE_H
@@ -20,9 +20,9 @@ extern "C" {
  *
  * A pose is the 3 x 4 matrix, row after row, that takes (x, y, z, 1) of the tool to the model units of the
  * stock: a rotation, and where the tool's origin is. Of a stock every voxel is cleared whose centre comes to
- * lie within the tool, at any time of its way:
- *  - Straight ahead the way is covered exactly, whatever the shape of the tool: by the prisms that its faces
- *    sweep. The way is not sampled, so that a step may be of any length.
+ * lie within the tool, anywhere along its path:
+ *  - Straight ahead the path is covered exactly, whatever the shape of the tool: by the prisms that its faces
+ *    sweep. The path is not sampled, so that a step may be of any length.
  *  - Between poses that are turned, the tool's origin moves straight and evenly, and the tool turns evenly
  *    the shorter way about an axis. That is done in equal parts (by halves) in which no point of the tool
  *    moves by more than half a voxel through the turn; in each the corners of faces go straight ahead, so

@@ -256,11 +256,11 @@ static void messages(void **state) {
   assert_int_equal(vxm_fail(NULL, VXM_ERROR_EMPTY, "nothing"), VXM_ERROR_EMPTY);
 
   static vxm_warnings warnings;
-  for (int i = 0; i < VXM_NOTES_MAX + 3; i++)
-    vxm_warn(&warnings, "note %d: %s", i, noise);
-  assert_int_equal(warnings.count, VXM_NOTES_MAX);
+  for (int i = 0; i < VXM_WARNINGS_MAX + 3; i++)
+    vxm_warn(&warnings, "warning %d: %s", i, noise);
+  assert_int_equal(warnings.count, VXM_WARNINGS_MAX);
   for (int i = 0; i < warnings.count; i++)
-    assert_one_printable_line(warnings.text[i], VXM_NOTE_LENGTH);
+    assert_one_printable_line(warnings.text[i], VXM_WARNING_LENGTH);
   assert_string_equal(vxm_status_name(VXM_OK), "ok");
   assert_string_equal(vxm_status_name(VXM_ERROR_CANCELLED), "cancelled");
   assert_string_equal(vxm_version(), "1.0.0");

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # A disk that is full in the middle of a batch: it ends with a clear line, no half file, and goes on when there is room.
-# The disk is one in memory; making it takes the right to mount, if need be in a space of users of its own.
+# The disk is one in memory; making it takes the right to mount, if need be in a user namespace of its own.
 set -eu
 if [ "${1:-}" != inside ]; then
   unshare -rm true 2>/dev/null || { echo "no right to mount"; exit 77; }

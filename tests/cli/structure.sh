@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The order of the rooms: each folder of src/ includes only its own files and those of folders before it, so that no
+# The order of the folders: each folder of src/ includes only its own files and those of folders before it, so that no
 # circle leaves a folder; the command line sees voxmend.h alone, and nothing below it prints or ends the program.
 set -eu
 cd "$SRCDIR/src"
@@ -11,7 +11,7 @@ complain() {
   bad=1
 }
 
-# What each folder may include comes before it. Within a room the folder of the same name, with its front, is the last.
+# What each folder may include comes before it. Of a folder with others in it what lies in it itself is the last.
 order="voxmend base mesh sandbox
   meshio/common meshio/formats meshio/external meshio
   repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/sheets repair/exact repair/bodies repair
@@ -19,11 +19,12 @@ order="voxmend base mesh sandbox
   voxel/lattice voxel/parts voxel/parity voxel/winding voxel/surface voxel/closest voxel/engine voxel/thin voxel/solid voxel/model
   voxel/sparse voxel/fields voxel/labels
   gpu/common gpu/opencl gpu/opengl gpu
-  gridio/common gridio/formats gridio/mesh gridio/picture gridio/page gridio
+  gridio/common gridio/formats/octree gridio/formats/minecraft gridio/formats/vdb gridio/formats/vox gridio/formats
+  gridio/mesh gridio/picture gridio/page gridio
   export remesh augment carve experimental api
   modules/assimp modules/images modules/occt modules/openmesh modules/cgal modules/openvdb modules/hdf5 modules/octomap"
 
-# Modules share the rooms that their makefile lists, and not each other.
+# Modules share the folders that their makefile lists, and not each other.
 listed=" $(echo $order) batch cli "
 for folder in $(find . -name '*.[ch]' -o -name '*.cc' -o -name '*.inc' | sed 's|^\./||; s|/*[^/]*$||' | sort -u); do
   case $listed in
@@ -56,6 +57,12 @@ for folder in $order; do
     $(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cc' -o -maxdepth 1 -name '*.inc') /dev/null | grep -vE ':[[:space:]]*(/\*|\*|//)' || true)
   [ -z "$found" ] || complain "$folder prints or ends the program" "$found"
 done
+
+# Calls need no include: what api defines is declared in the public headers, which all may include.
+public=$(grep -hE '^[a-z][a-z0-9_ *]* \**vxm_[a-z0-9_]*\(' api/*.c | grep -v '^static' | sed 's/(.*//; s/.*[ *]//' | sort -u | paste -sd '|')
+found=$(grep -nE "(^|[^a-z0-9_])($public)\(" $(find . -name '*.[ch]' -o -name '*.cc' -o -name '*.inc' | grep -vE '^\./(api|batch|cli|voxmend)/') |
+  grep -vE ':[[:space:]]*(/\*|\*|//)' || true)
+[ -z "$found" ] || complain "what comes before api calls it" "$found"
 
 found=$(for file in $(find . ../tests ../samples -name '*.[ch]' -o -name '*.cc'); do
   head -n 1 "$file" | grep -q 'SPDX-License-Identifier' || echo "$file"

@@ -26,6 +26,6 @@ const fuzz_target *fuzz_at(size_t index);
 void fuzz_require(bool holds, const char *what);
 
 /* A function for each kind of reader; `name` is the target's. */
-fuzz_function fuzz_mesh, fuzz_foreign, fuzz_grid, fuzz_raw, fuzz_sidecar, fuzz_parcel;
+fuzz_function fuzz_mesh, fuzz_foreign, fuzz_grid, fuzz_raw, fuzz_sidecar, fuzz_wire;
 
 #endif

@@ -14,7 +14,7 @@ static const fuzz_target targets[] = {
     {"rle", fuzz_grid, false, NULL},       {"vdb", fuzz_grid, true, "openvdb"},
     {"raw", fuzz_raw, false, NULL},        {"sidecar", fuzz_sidecar, false, NULL},
     {"vox", fuzz_grid, false, NULL},       {"schem", fuzz_grid, false, NULL},
-    {"parcel", fuzz_parcel, false, NULL},  {"gltf", fuzz_foreign, true, "assimp"},
+    {"wire", fuzz_wire, false, NULL},      {"gltf", fuzz_foreign, true, "assimp"},
     {"glb", fuzz_foreign, true, "assimp"}, {"3mf", fuzz_foreign, true, "assimp"},
     {"dae", fuzz_foreign, true, "assimp"}, {"fbx", fuzz_foreign, true, "assimp"},
     {"3ds", fuzz_foreign, true, "assimp"}, {"x3d", fuzz_foreign, true, "assimp"},

@@ -137,6 +137,31 @@ static inline void assert_reads_back(const vxm_grid *grid, const char *path) {
   vxm_grid_destroy(back);
 }
 
+static inline vxm_field *make_field(vxm_context *context, const vxm_space *space, vxm_field_kind kind,
+                                    vxm_scalar scalar) {
+  vxm_field *field;
+  assert_int_equal(vxm_field_make(&field, context, space, kind, scalar, NULL), VXM_OK);
+  field->about.is_declared = true;
+  return field;
+}
+
+static inline void write_field(const vxm_field *field, const char *path) {
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_gridio_write_field(field, path, NULL, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+}
+
+static inline vxm_field *read_field(vxm_context *context, const char *path) {
+  vxm_grid *grid;
+  vxm_field *field;
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_gridio_read_either(&grid, &field, context, path, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  assert_null(grid);
+  assert_non_null(field);
+  return field;
+}
+
 /** An empty folder of its own in the present one. */
 static inline void make_folder(char folder[64]) {
   strcpy(folder, "gridio-test-XXXXXX");

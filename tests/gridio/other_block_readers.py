@@ -184,7 +184,7 @@ def lab(rgb):
 
 def block_colors():
     """The table of the library's source: facts about the game."""
-    source = os.path.join(os.path.dirname(__file__), "../../src/gridio/formats/block_colors.c")
+    source = os.path.join(os.path.dirname(__file__), "../../src/gridio/formats/minecraft/block_colors.c")
     lines = [line.strip().strip("{},") for line in open(source) if line.strip().startswith('{"minecraft:')]
     return {part.split(", {")[0].strip('"'): [int(v) for v in part.split("{")[1].split(",")] for part in lines}
 

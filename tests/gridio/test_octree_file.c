@@ -7,7 +7,7 @@
 #include "base/endian.h"
 #include "grid/octree_build.h"
 #include "grid/octree_pieces.h"
-#include "gridio/formats/octree_file.h"
+#include "gridio/formats/octree/octree_file.h"
 
 /** The form is canonical: equal sets have equal words. */
 static void assert_same_octree(const vxm_sparse *a, const vxm_sparse *b) {

@@ -6,7 +6,7 @@
 
 #include "base/endian.h"
 #include "grid/octree_pieces.h"
-#include "gridio/formats/octree_values.h"
+#include "gridio/formats/octree/octree_values.h"
 
 typedef struct sort {
   vxm_field_kind kind;

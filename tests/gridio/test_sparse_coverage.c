@@ -4,7 +4,7 @@
 #include "grids.h"
 
 #include "base/endian.h"
-#include "gridio/formats/octree_file.h"
+#include "gridio/formats/octree/octree_file.h"
 
 enum { CUBES_MOST = 40000 };
 

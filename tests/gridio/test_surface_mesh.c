@@ -274,13 +274,13 @@ static double check_manifold(vxm_soup *soup, const vxm_space *space) {
 
 static vxm_soup *split_surface_of(const vxm_grid *grid, unsigned how) {
   vxm_soup *soup = NULL;
-  assert_int_equal(vxm_gridio_surface_mesh(&soup, grid, VXM_SURFACE_MANIFOLD | how, NULL), VXM_OK);
+  assert_int_equal(vxm_gridio_surface_mesh(&soup, grid, VXM_SURFACE_MESH_MANIFOLD | how, NULL), VXM_OK);
   return soup;
 }
 
 static void check_split(const vxm_grid *grid) {
   vxm_soup *plain = surface_of(grid);
-  for (unsigned how = 0; how <= VXM_SURFACE_TRIANGLES; how += VXM_SURFACE_TRIANGLES) {
+  for (unsigned how = 0; how <= VXM_SURFACE_MESH_TRIANGLES; how += VXM_SURFACE_MESH_TRIANGLES) {
     vxm_soup *soup = split_surface_of(grid, how);
     double voxels = (double)vxm_grid_count(grid), volume = check_manifold(soup, &grid->space);
     /* a vertex that is moved takes a part of the faces about it along */

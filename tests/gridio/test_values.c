@@ -39,21 +39,6 @@ static vxm_field *random_field(vxm_context *context, vxm_rng *rng, vxm_scalar sc
   return field;
 }
 
-static vxm_field *read_field(vxm_context *context, const char *path) {
-  vxm_field *field = NULL;
-  vxm_grid *grid = NULL;
-  vxm_error error = VXM_ERROR_INIT;
-  if (vxm_gridio_read_either(&grid, &field, context, path, &error) != VXM_OK || grid)
-    fail_msg("%s: %s", path, grid ? "it is taken for bits" : error.text);
-  return field;
-}
-
-static void write_field(const vxm_field *field, const char *path) {
-  vxm_error error = VXM_ERROR_INIT;
-  if (vxm_gridio_write_field(field, path, NULL, &error) != VXM_OK)
-    fail_msg("%s", error.text);
-}
-
 static void assert_same_values(const vxm_field *a, const vxm_field *b) {
   assert_int_equal(a->scalar, b->scalar);
   assert_memory_equal(&a->space, &b->space, sizeof a->space);

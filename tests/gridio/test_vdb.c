@@ -6,8 +6,8 @@
 #include "grids.h"
 
 #include "gridio/common/format.h"
-#include "gridio/formats/vdb.h"
-#include "gridio/formats/vdb_field.h"
+#include "gridio/formats/vdb/vdb.h"
+#include "gridio/formats/vdb/vdb_field.h"
 #include "gridio/sparse_write.h"
 
 #include <ctype.h>

@@ -241,9 +241,9 @@ static bool is_part(const char *name, bool is_folder, int depth) {
 static void test_abandoned_folders(void **state) {
   (void)state;
   vxm_context *context = context_with(1, 0, NULL, NULL);
-  vxm_new_folder left;
-  assert_int_equal(vxm_new_folder_open(&left, path, ".zarray", is_part, "a Zarr array", NULL), VXM_OK);
-  assert_true(vxm_new_folder_put(&left, "0.0.0", "x", 1));
+  vxm_atomic_folder left;
+  assert_int_equal(vxm_atomic_folder_open(&left, path, ".zarray", is_part, "a Zarr array", NULL), VXM_OK);
+  assert_true(vxm_atomic_folder_put(&left, "0.0.0", "x", 1));
   assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
   assert_int_equal(entries(folder), 2);
   assert_int_equal(close(left.descriptor), 0); /* and its lock */
@@ -259,37 +259,37 @@ static void test_abandoned_folders(void **state) {
   assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
   assert_int_equal(entries(folder), 2);
   left.descriptor = -1;
-  vxm_new_folder_close(&left);
+  vxm_atomic_folder_close(&left);
   vxm_context_destroy(context);
 }
 
-static void open_new(vxm_new_folder *out, const char *chunk) {
-  assert_int_equal(vxm_new_folder_open(out, path, ".zarray", is_part, "a Zarr array", NULL), VXM_OK);
-  assert_true(vxm_new_folder_put(out, ".zarray", "{}", 2));
-  assert_true(vxm_new_folder_put(out, chunk, "x", 1));
+static void open_new(vxm_atomic_folder *out, const char *chunk) {
+  assert_int_equal(vxm_atomic_folder_open(out, path, ".zarray", is_part, "a Zarr array", NULL), VXM_OK);
+  assert_true(vxm_atomic_folder_put(out, ".zarray", "{}", 2));
+  assert_true(vxm_atomic_folder_put(out, chunk, "x", 1));
 }
 
 /** Two write one array at the same time: neither takes away what is the other's. */
 static void test_two_writers(void **state) {
   (void)state;
-  vxm_new_folder first, second, third;
+  vxm_atomic_folder first, second, third;
   vxm_context *context = context_with(1, 0, NULL, NULL);
   assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
   for (int locks = 1; locks >= 0; locks--) {
     open_new(&first, "0.0.1");
-    assert_int_equal(vxm_new_folder_publish(&first, path, NULL), VXM_OK);
+    assert_int_equal(vxm_atomic_folder_publish(&first, path, NULL), VXM_OK);
     if (!locks) /* as where folders cannot be locked */
       assert_int_equal(flock(first.old, LOCK_UN), 0);
     open_new(&second, "0.0.2");
     assert_int_equal(strcmp(first.temporary, second.temporary) == 0, !locks);
     open_new(&third, "0.0.3");
-    vxm_new_folder_close(&first);
-    assert_int_equal(vxm_new_folder_publish(&second, path, NULL), VXM_OK);
-    vxm_new_folder_close(&second);
+    vxm_atomic_folder_close(&first);
+    assert_int_equal(vxm_atomic_folder_publish(&second, path, NULL), VXM_OK);
+    vxm_atomic_folder_close(&second);
     assert_int_equal(access(inner("0.0.2"), F_OK), 0);
-    assert_int_equal(vxm_new_folder_publish(&third, path, NULL), VXM_OK);
-    vxm_new_folder_revert(&third);
-    vxm_new_folder_close(&third);
+    assert_int_equal(vxm_atomic_folder_publish(&third, path, NULL), VXM_OK);
+    vxm_atomic_folder_revert(&third);
+    vxm_atomic_folder_close(&third);
     assert_int_equal(access(inner("0.0.2"), F_OK), 0);
     assert_int_equal(entries(path), 2);
     assert_int_equal(entries(folder), 1);
@@ -300,7 +300,7 @@ static void test_two_writers(void **state) {
 /** What comes there while the new one is written is looked at too; a secret array stays one meanwhile. */
 static void test_changes_meanwhile(void **state) {
   (void)state;
-  vxm_new_folder late;
+  vxm_atomic_folder late;
   struct stat info;
   vxm_error error = VXM_ERROR_INIT;
   vxm_context *context = context_with(1, 0, NULL, NULL);
@@ -310,9 +310,9 @@ static void test_changes_meanwhile(void **state) {
   assert_int_equal(fstat(late.descriptor, &info), 0);
   assert_int_equal(info.st_mode & 0777, 0700);
   save_file(inner("note.txt"), "mine", 4);
-  assert_int_equal(vxm_new_folder_publish(&late, path, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_atomic_folder_publish(&late, path, &error), VXM_ERROR_ARGUMENT);
   assert_non_null(strstr(error.text, "\"note.txt\", which is no part"));
-  vxm_new_folder_close(&late);
+  vxm_atomic_folder_close(&late);
   assert_int_equal(entries(path), 4);
   assert_int_equal(entries(folder), 1);
   vxm_context_destroy(context);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What the tests of foreign formats share. */
-#ifndef FOREIGN_TEST_H
-#define FOREIGN_TEST_H
+#ifndef EXTERNAL_TEST_H
+#define EXTERNAL_TEST_H
 
 #include "meshio_test.h"
 

@@ -41,7 +41,7 @@ static vxm_status make_strip(vxm_soup *soup, size_t faces, vxm_error *error) {
   soup->face_tags = vxm_alloc(soup->context, faces, sizeof *soup->face_tags, error);
   for (size_t f = 0; f < faces && soup->face_tags; f++)
     soup->face_tags[f] = (uint32_t)(f % 2);
-  vxm_warn(&soup->warnings, "a note\nof two lines");
+  vxm_warn(&soup->warnings, "a warning\nof two lines");
   return soup->face_tags ? VXM_OK : error->code;
 }
 

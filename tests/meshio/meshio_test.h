@@ -137,25 +137,26 @@ static inline void expect_vertex(const vxm_soup *soup, size_t vertex, double x, 
     assert_true(p[c] == expected[c] || (isnan(p[c]) && isnan(expected[c])));
 }
 
-static inline void expect_note(const vxm_soup *soup, const char *part) {
+static inline void expect_warning(const vxm_soup *soup, const char *part) {
   for (int n = 0; n < soup->warnings.count; n++)
     if (strstr(soup->warnings.text[n], part))
       return;
-  fail_msg("no note \"%s\" among %d; first: \"%s\"", part, soup->warnings.count,
+  fail_msg("no warning \"%s\" among %d; first: \"%s\"", part, soup->warnings.count,
            soup->warnings.count ? soup->warnings.text[0] : "");
 }
 
-static inline void expect_no_notes(const vxm_soup *soup) {
+static inline void expect_no_warnings(const vxm_soup *soup) {
   if (soup->warnings.count)
-    fail_msg("unexpected note \"%s\"", soup->warnings.text[0]);
+    fail_msg("unexpected warning \"%s\"", soup->warnings.text[0]);
 }
 
-/** As expect_no_notes for soups made at random, with vertices that no face uses, or that are not finite. */
+/** As expect_no_warnings for soups made at random, with vertices that no face uses, or that are not finite.
+ */
 static inline void expect_no_damage(const vxm_soup *soup) {
   for (int n = 0; n < soup->warnings.count; n++)
     if (!strstr(soup->warnings.text[n], "may be cut off: no face uses") &&
         !strstr(soup->warnings.text[n], "that is not finite"))
-      fail_msg("unexpected note \"%s\"", soup->warnings.text[n]);
+      fail_msg("unexpected warning \"%s\"", soup->warnings.text[n]);
 }
 
 /* ---- Random soups ---- */

@@ -21,7 +21,7 @@ static bool is_manifold(vxm_soup *soup, bool *paired) {
   vxm_repair_state state = {.context = soup->context, .soup = soup};
   bool manifold;
   assert_int_equal(vxm_is_manifold(&manifold, &state, NULL), VXM_OK);
-  *paired = state.edges.across != NULL;
+  *paired = state.edges.adjacent != NULL;
   vxm_repair_state_touch(&state);
   return manifold;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What surfaces are for: thin ones separate, and faces cover what they are, however they are cut up. */
-#include "../meshio/polygons.h"
+#include "../mesh/polygons.h"
 #include "surfaces.h"
 
 #include "voxel/model/voxelize.h"

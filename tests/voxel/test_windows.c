@@ -5,7 +5,7 @@
 
 #include "base/cpu.h"
 
-#include "grid/sum.h"
+#include "grid/count_hash.h"
 #include "voxel/model/model_report.h"
 
 static const vxm_layout layouts[6] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
@@ -51,7 +51,7 @@ static void check_windows(vxm_model *model, const vxm_grid *whole, const vxm_vox
   vxm_model_pass *pass;
   if (vxm_model_begin(&pass, model, space, NULL, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
-  vxm_sum sum = vxm_sum_start(space);
+  vxm_count_hash sum = vxm_count_hash_start(space);
   uint64_t *before = NULL;
   for (int64_t begin = 0, end; begin < space->dims[layout.slow]; begin = end) {
     end = vxm_min(begin + 1 + (int64_t)vxm_rng_below(rng, (uint64_t)most), space->dims[layout.slow]);
@@ -63,7 +63,7 @@ static void check_windows(vxm_model *model, const vxm_grid *whole, const vxm_vox
     if (vxm_model_pass_fill(pass, &window, &error) != VXM_OK)
       fail_msg("%s", error.text);
     assert_window_is(&window, whole);
-    vxm_sum_add(&sum, model->context, &window, before);
+    vxm_count_hash_add(&sum, model->context, &window, before);
     free(before);
     before = malloc(window.slice_words * sizeof *before);
     assert_non_null(before);

@@ -22,7 +22,7 @@ static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
     [VXM_CL_COVERAGE] = {"coverage.cl"},
     [VXM_CL_MOVE] = {"move.cl"},
     [VXM_CL_PUBLISHED] = {"published.cl"},
-    [VXM_CL_KEEP] = {"keep.cl"},
+    [VXM_CL_DEVICE_VOXELS] = {"device_voxels.cl"},
 };
 
 static const struct {
@@ -73,8 +73,8 @@ static const struct {
     [VXM_CL_COUNT_GROUPS] = {"count_groups", VXM_CL_COVERAGE},
     [VXM_CL_PUBLISHED_FACETS] = {"published_facets", VXM_CL_PUBLISHED},
     [VXM_CL_PUBLISHED_VOXELS] = {"published_voxels", VXM_CL_PUBLISHED},
-    [VXM_CL_KEEP_BYTES] = {"keep_bytes", VXM_CL_KEEP},
-    [VXM_CL_KEEP_FLOATS] = {"keep_floats", VXM_CL_KEEP},
+    [VXM_CL_DEVICE_VOXELS_BYTES] = {"voxels_to_bytes", VXM_CL_DEVICE_VOXELS},
+    [VXM_CL_DEVICE_VOXELS_FLOATS] = {"voxels_to_floats", VXM_CL_DEVICE_VOXELS},
 };
 
 static const char *source_text(const char *name) {

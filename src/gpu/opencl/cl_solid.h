@@ -25,12 +25,12 @@ vxm_status vxm_cl_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_space *
 vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
                         vxm_error *error);
 
-/** See vxm_engine_ops (cl_keep.c). */
-vxm_status vxm_cl_keep(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
-                       vxm_error *error);
-vxm_status vxm_cl_keep_begin(vxm_engine *engine, const vxm_window *window, vxm_error *error);
-vxm_status vxm_cl_keep_end(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
-                           const vxm_window *window, vxm_error *error);
+/** See vxm_engine_ops (cl_device_voxels.c). */
+vxm_status vxm_cl_device_voxels(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
+                                vxm_error *error);
+vxm_status vxm_cl_device_voxels_begin(vxm_engine *engine, const vxm_window *window, vxm_error *error);
+vxm_status vxm_cl_device_voxels_end(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
+                                    const vxm_window *window, vxm_error *error);
 /** Puts a tile of a window that stays where it belongs. */
 vxm_status vxm_cl_tile_stay(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id from,
                             vxm_error *error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The OpenCL program of Faieghi, Tutunea-Fatan and Eagleson, for comparison; the kernels are in
- * shaders/published.cl. The functions of the same names in voxmend.h check arguments and call these. */
+ * shaders/published.cl. The functions of the same names in voxmend/experimental.h check arguments and call
+ * these. */
 #ifndef VXM_GPU_OPENCL_FAIEGHI_H
 #define VXM_GPU_OPENCL_FAIEGHI_H
 

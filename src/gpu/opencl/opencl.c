@@ -31,9 +31,9 @@ static const vxm_engine_ops opencl_ops = {.move = vxm_cl_move,
                                           .sparse = vxm_cl_sparse,
                                           .sparse_surface = vxm_cl_surface_sparse,
                                           .count = vxm_cl_count,
-                                          .keep = vxm_cl_keep,
-                                          .keep_begin = vxm_cl_keep_begin,
-                                          .keep_end = vxm_cl_keep_end,
+                                          .device_voxels = vxm_cl_device_voxels,
+                                          .device_voxels_begin = vxm_cl_device_voxels_begin,
+                                          .device_voxels_end = vxm_cl_device_voxels_end,
                                           .destroy = destroy};
 
 static vxm_status start(vxm_opencl *engine, vxm_error *error) {

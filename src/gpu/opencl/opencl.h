@@ -22,7 +22,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_COVERAGE,
   VXM_CL_MOVE,
   VXM_CL_PUBLISHED,
-  VXM_CL_KEEP,
+  VXM_CL_DEVICE_VOXELS,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
 
@@ -71,8 +71,8 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_MOVE_POINTS,
   VXM_CL_PUBLISHED_FACETS,
   VXM_CL_PUBLISHED_VOXELS,
-  VXM_CL_KEEP_BYTES,
-  VXM_CL_KEEP_FLOATS,
+  VXM_CL_DEVICE_VOXELS_BYTES,
+  VXM_CL_DEVICE_VOXELS_FLOATS,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
 

@@ -123,7 +123,7 @@ vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error
       [VXM_GL_MOVE] = {{"move.vert"}, false},
       [VXM_GL_PACK] = {{"pack.comp"}, false},
       [VXM_GL_MERGE] = {{"merge.comp"}, false},
-      [VXM_GL_KEEP] = {{"keep.comp"}, false},
+      [VXM_GL_DEVICE_VOXELS] = {{"device_voxels.comp"}, false},
   };
   vxm_status status = VXM_OK;
   if (sources[id].wide && !engine->base.info.int64)

@@ -19,12 +19,12 @@ vxm_status vxm_gl_surface(vxm_engine *engine, const vxm_surface *surface, const 
 /** See vxm_engine_ops (gl_color.c). */
 vxm_status vxm_gl_color(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
 
-/** See vxm_engine_ops (gl_keep.c). */
-vxm_status vxm_gl_keep(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
-                       vxm_error *error);
-vxm_status vxm_gl_keep_begin(vxm_engine *engine, const vxm_window *window, vxm_error *error);
-vxm_status vxm_gl_keep_end(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
-                           const vxm_window *window, vxm_error *error);
+/** See vxm_engine_ops (gl_device_voxels.c). */
+vxm_status vxm_gl_device_voxels(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
+                                vxm_error *error);
+vxm_status vxm_gl_device_voxels_begin(vxm_engine *engine, const vxm_window *window, vxm_error *error);
+vxm_status vxm_gl_device_voxels_end(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
+                                    const vxm_window *window, vxm_error *error);
 /** Puts what is in VXM_GL_RESULT where it belongs in a window that stays. */
 vxm_status vxm_gl_tile_stay(vxm_opengl *engine, const vxm_slice_job *tile, vxm_error *error);
 /** The other way. */

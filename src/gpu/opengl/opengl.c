@@ -189,9 +189,9 @@ static const vxm_engine_ops opengl_ops = {.move = vxm_gl_move,
                                           .vote = vxm_gl_vote,
                                           .surface = vxm_gl_surface,
                                           .color = vxm_gl_color,
-                                          .keep = vxm_gl_keep,
-                                          .keep_begin = vxm_gl_keep_begin,
-                                          .keep_end = vxm_gl_keep_end,
+                                          .device_voxels = vxm_gl_device_voxels,
+                                          .device_voxels_begin = vxm_gl_device_voxels_begin,
+                                          .device_voxels_end = vxm_gl_device_voxels_end,
                                           .destroy = destroy};
 
 static vxm_status start(vxm_opengl *engine, vxm_error *error) {

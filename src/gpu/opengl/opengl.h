@@ -22,7 +22,7 @@ typedef enum vxm_gl_program_id {
   VXM_GL_FIND_SURFACE,
   VXM_GL_DRAW_SURFACE,
   VXM_GL_MOVE,
-  VXM_GL_KEEP,
+  VXM_GL_DEVICE_VOXELS,
   VXM_GL_PROGRAMS
 } vxm_gl_program_id;
 

@@ -127,6 +127,17 @@ bool vxm_label_table_add(vxm_label_table *table, vxm_context *context, const cha
   return true;
 }
 
+vxm_status vxm_field_put_label(vxm_field *field, const char *name, int64_t voxels, vxm_error *error) {
+  bool is_there = vxm_label_table_add(&field->about.table, field->context, name, voxels);
+  return is_there ? VXM_OK : vxm_fail(error, VXM_ERROR_MEMORY, "field: no room for another label");
+}
+
+vxm_status vxm_field_put_pair(vxm_field *field, const char *key, const char *value, vxm_error *error) {
+  bool is_there =
+      vxm_metadata_add(&field->about.pairs, field->context, key, strlen(key), value, strlen(value));
+  return is_there ? VXM_OK : vxm_fail(error, VXM_ERROR_RANGE, "field: no room for more metadata");
+}
+
 /* ---- Life ---- */
 
 typedef void *(*allocate_fn)(vxm_context *context, size_t count, size_t size, vxm_error *error);

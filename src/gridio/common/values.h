@@ -84,6 +84,10 @@ void vxm_about_destroy(vxm_about *about);
 bool vxm_about_may_be_bits(const vxm_about *about, vxm_bits_rule rule);
 /** Gives a field what is said of it, and takes that over. The kind counts only if it goes with the type. */
 void vxm_field_describe(vxm_field *field, vxm_about *about);
+/** Add a label to the table of a field, or a pair of texts. @return VXM_OK; VXM_ERROR_MEMORY; VXM_ERROR_RANGE
+ * beyond what a field carries of pairs */
+vxm_status vxm_field_put_label(vxm_field *field, const char *name, int64_t voxels, vxm_error *error);
+vxm_status vxm_field_put_pair(vxm_field *field, const char *key, const char *value, vxm_error *error);
 /** Adds an entry to a table of labels; false without memory. */
 bool vxm_label_table_add(vxm_label_table *table, vxm_context *context, const char *name, int64_t voxels);
 

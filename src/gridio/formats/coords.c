@@ -81,7 +81,7 @@ vxm_status vxm_gridio_coords_sparse(const vxm_sparse *sparse, const char *path, 
   int64_t count;
   uint64_t hash;
   vxm_output *output;
-  vxm_octree_sum(sparse, &count, &hash);
+  vxm_octree_count_hash(sparse, &count, &hash);
   vxm_status status = begin(&output, sparse->context, path, count, error);
   if (status != VXM_OK)
     return status;

@@ -3,7 +3,6 @@
 #include "base/number.h"
 #include "gridio/common/format.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <strings.h>
 
@@ -222,12 +221,8 @@ static vxm_status read_detached(fields *f, text line) {
   return fail(f, "the values are in another file; only files that hold both can be read");
 }
 
-/** Fields that are carried along, by the names of their pairs. */
-static const struct {
-  const char *field, *key;
-} carried[] = {{"space", "nrrd_space"}, {"space units", "nrrd_space_units"}, {"content", "nrrd_content"}};
-
-enum { CARRIED = sizeof carried / sizeof carried[0] };
+const vxm_nrrd_carried vxm_nrrd_carried_fields[VXM_NRRD_CARRIED] = {
+    {"space", "nrrd_space"}, {"space units", "nrrd_space_units"}, {"content", "nrrd_content"}};
 
 static void carry(fields *f, const char *key, text value) {
   vxm_metadata_add(&f->header->about.pairs, f->input->context, key, strlen(key), (const char *)value.at,
@@ -263,21 +258,19 @@ static vxm_status read_field(fields *f, text name, text value) {
         *known[k].seen = true;
       return known[k].read(f, value);
     }
-  for (int c = 0; c < CARRIED; c++)
-    if (equals(name, carried[c].field))
-      carry(f, carried[c].key, value);
+  for (int c = 0; c < VXM_NRRD_CARRIED; c++)
+    if (equals(name, vxm_nrrd_carried_fields[c].field))
+      carry(f, vxm_nrrd_carried_fields[c].key, value);
   return VXM_OK;
 }
-
-static const char corner_key[] = "voxmend_origin", values_key[] = "voxmend_values";
 
 static vxm_status read_pair(fields *f, text name, text value) {
   vxm_about *about = &f->header->about;
   char kind[16];
   size_t length = (size_t)(value.end - value.at);
-  if (equals(name, corner_key))
+  if (equals(name, VXM_NRRD_ORIGIN_KEY))
     f->has_corner = read_three(f, value, f->corner);
-  else if (equals(name, values_key) && length < sizeof kind) {
+  else if (equals(name, VXM_NRRD_VALUES_KEY) && length < sizeof kind) {
     memcpy(kind, value.at, length);
     kind[length] = '\0';
     about->is_declared = vxm_field_kind_find(&about->kind, kind);
@@ -391,128 +384,4 @@ vxm_status vxm_nrrd_header_read(vxm_nrrd_header *out, const vxm_input *input, vx
   if (status == VXM_OK)
     find_space(&f, warnings);
   return status;
-}
-
-/* ---- Writing ---- */
-
-/** Writes a form in which stars stand for the numbers, which read back bit for bit, whatever the locale. */
-static void write_numbers(vxm_output *output, locale_t c_locale, const char *form, const double *values) {
-  for (; *form; form++)
-    if (*form == '*') {
-      char number[VXM_NUMBER_ROOM];
-      vxm_output_write(output, number, vxm_number_write(number, *values++, c_locale));
-    } else
-      vxm_output_write(output, form, 1);
-}
-
-static const char *type_name(vxm_scalar scalar) {
-  switch (scalar) {
-  case VXM_UINT8:
-    return "uchar";
-  case VXM_INT8:
-    return "signed char";
-  case VXM_UINT16:
-    return "ushort";
-  case VXM_INT16:
-    return "short";
-  case VXM_UINT32:
-    return "uint";
-  case VXM_INT32:
-    return "int";
-  case VXM_UINT64:
-    return "ulonglong";
-  case VXM_INT64:
-    return "longlong";
-  case VXM_FLOAT64:
-    return "double";
-  default:
-    return "float";
-  }
-}
-
-/** Writes a text that stays in its line; in keys ':' would end them. */
-static void write_text(vxm_output *output, const char *word, bool is_key) {
-  for (; *word; word++)
-    if ((unsigned char)*word < 0x20 || *word == 0x7f)
-      vxm_output_write(output, *word == '\n' && !is_key ? "\\n" : " ", *word == '\n' && !is_key ? 2 : 1);
-    else
-      vxm_output_write(output, is_key && *word == ':' ? "_" : word, 1);
-}
-
-static void write_pair(vxm_output *output, const char *key, const char *value) {
-  write_text(output, key, true);
-  vxm_output_write(output, ":=", 2);
-  write_text(output, value, false);
-  vxm_output_write(output, "\n", 1);
-}
-
-static const char *pair_of(const vxm_nrrd_values *values, const char *key) {
-  return values->about ? vxm_metadata_find(&values->about->pairs, key) : NULL;
-}
-
-/** The name of the space, where one is carried along, or else how many dimensions it has. */
-static void write_space_name(vxm_output *output, const vxm_nrrd_values *values) {
-  const char *name = pair_of(values, carried[0].key);
-  if (!name) {
-    vxm_output_printf(output, "space dimension: 3\n");
-    return;
-  }
-  vxm_output_printf(output, "space: ");
-  write_text(output, name, false);
-  vxm_output_printf(output, "\n");
-}
-
-/** What was carried along. */
-static void write_about(vxm_output *output, const vxm_nrrd_values *values) {
-  const vxm_about *about = values->about;
-  if (!about)
-    return;
-  for (int c = 1; c < CARRIED; c++) {
-    const char *value = pair_of(values, carried[c].key);
-    if (!value)
-      continue;
-    vxm_output_printf(output, "%s: ", carried[c].field);
-    write_text(output, value, false);
-    vxm_output_printf(output, "\n");
-  }
-  if (about->is_declared)
-    write_pair(output, values_key, vxm_field_kind_name(about->kind));
-  for (const char *key = NULL; (key = vxm_metadata_next(&about->pairs, key)) != NULL;) {
-    int c = 0;
-    while (c < CARRIED && strcmp(carried[c].key, key) != 0)
-      c++;
-    if (c == CARRIED)
-      write_pair(output, key, vxm_metadata_value(key));
-  }
-}
-
-vxm_status vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *values, const vxm_space *space,
-                                 vxm_error *error) {
-  const int64_t *dims = space->dims;
-  bool is_color = values->channels == 4;
-  locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c_locale)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  double first[3];
-  for (int a = 0; a < 3; a++)
-    first[a] = space->origin[a] + space->voxel_size[a] / 2;
-  vxm_output_printf(output, "NRRD0004\n# %s\ntype: %s\ndimension: %d\n", values->what,
-                    type_name(values->scalar), is_color ? 4 : 3);
-  write_space_name(output, values);
-  vxm_output_printf(output, "sizes: %s%" PRId64 " %" PRId64 " %" PRId64 "\n", is_color ? "4 " : "", dims[0],
-                    dims[1], dims[2]);
-  vxm_output_printf(output, "space directions: %s", is_color ? "none " : "");
-  write_numbers(output, c_locale, "(*,0,0) (0,*,0) (0,0,*)\n", space->voxel_size);
-  vxm_output_printf(output, "kinds: %sdomain domain domain\ncenterings: %scell cell cell\n",
-                    is_color ? "RGBA-color " : "", is_color ? "none " : "");
-  if (vxm_scalar_bytes(values->scalar) > 1)
-    vxm_output_printf(output, "endian: little\n");
-  vxm_output_printf(output, "encoding: raw\n");
-  write_numbers(output, c_locale, "space origin: (*,*,*)\n", first);
-  vxm_output_printf(output, "%s:=", corner_key);
-  write_numbers(output, c_locale, "* * *\n", space->origin);
-  freelocale(c_locale);
-  write_about(output, values);
-  vxm_output_write(output, "\n", 1);
-  return VXM_OK;
 }

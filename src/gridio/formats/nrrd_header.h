@@ -23,6 +23,20 @@ bool vxm_nrrd_sniff(const vxm_input *input);
 /** VXM_ERROR_FORMAT with the offset of what is wrong, or of what voxmend cannot take as a grid. */
 vxm_status vxm_nrrd_header_read(vxm_nrrd_header *out, const vxm_input *input, vxm_warnings *warnings,
                                 vxm_error *error);
+
+/** A field of NRRD that says nothing of the values, and the key of the pair that carries it along. */
+typedef struct vxm_nrrd_carried {
+  const char *field, *key;
+} vxm_nrrd_carried;
+
+enum { VXM_NRRD_CARRIED = 3 };
+/** The first is the name of the space. */
+extern const vxm_nrrd_carried vxm_nrrd_carried_fields[VXM_NRRD_CARRIED];
+
+/** Keys of what voxmend adds: the minimum corner bit for bit, and what the values stand for. */
+#define VXM_NRRD_ORIGIN_KEY "voxmend_origin"
+#define VXM_NRRD_VALUES_KEY "voxmend_values"
+
 /** What a header to be written says of the values. */
 typedef struct vxm_nrrd_values {
   const char *what; /**< a comment */

@@ -3,7 +3,7 @@
 #include "gridio/formats/octomap.h"
 #include "gridio/common/format.h"
 #include "gridio/formats/octomap_read.h"
-#include "gridio/formats/octree_slices.h"
+#include "gridio/formats/octree/octree_slices.h"
 
 #include <math.h>
 

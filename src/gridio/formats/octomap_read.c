@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/octomap_read.h"
 #include "gridio/common/format.h"
+#include "gridio/common/sink_fill.h"
 #include "gridio/formats/octomap.h"
-#include "gridio/formats/vdb_fill.h"
 #include "sandbox/reader_process.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ typedef struct receipt {
   vxm_bits_rule rule;
   vxm_sink_grid grid;
   vxm_warnings warnings;
-  vxm_vdb_filling filling;
+  vxm_sink_filling filling;
   vxm_octree_pieces pieces; /**< of an octree */
   vxm_error fault;          /**< of these */
 } receipt;
@@ -116,7 +116,7 @@ static vxm_status take_extent(void *payload, const vxm_sink_extent *extent, vxm_
 /* ---- The voxels ---- */
 
 static void take_bits(void *payload, const int64_t at[3], const uint64_t bits[VXM_SINK_SIDE]) {
-  vxm_vdb_fill_bits(&((receipt *)payload)->filling, at, bits);
+  vxm_sink_fill_bits(&((receipt *)payload)->filling, at, bits);
 }
 
 /** A sound reader sends none. */
@@ -125,7 +125,7 @@ static void take_numbers(void *payload, const int64_t at[3], const float numbers
 }
 
 static void take_cube(void *payload, const int64_t at[3], int64_t side, float number) {
-  vxm_vdb_fill_cube(&((receipt *)payload)->filling, at, side, number);
+  vxm_sink_fill_cube(&((receipt *)payload)->filling, at, side, number);
 }
 
 /** Reads the file into r->filling, which holds nothing after a failure. */
@@ -144,7 +144,7 @@ static vxm_status receive(receipt *r, vxm_error *error) {
   if (status != VXM_OK) {
     vxm_grid_destroy(r->filling.grid);
     vxm_free(input->context, r->pieces.list);
-    r->filling = (vxm_vdb_filling){.grid = NULL};
+    r->filling = (vxm_sink_filling){.grid = NULL};
   }
   return status;
 }

@@ -19,7 +19,7 @@ enum { CHUNK = 64, CHUNK_X_MIN = 8 };
 static const uint64_t SLAB_BYTES = UINT64_C(64) << 20;
 
 typedef struct state {
-  vxm_new_folder folder;
+  vxm_atomic_folder folder;
   bool is_open;
   vxm_zarr_array array;
   size_t voxel_bytes;
@@ -121,7 +121,7 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
     vxm_error_pass(error, &local);
     return local.code;
   }
-  status = vxm_new_folder_open(&s->folder, w->path, ".zarray", is_part, "a Zarr array", error);
+  status = vxm_atomic_folder_open(&s->folder, w->path, ".zarray", is_part, "a Zarr array", error);
   s->is_open = status == VXM_OK;
   return status;
 }
@@ -173,7 +173,7 @@ static vxm_status put_chunk(const flushing *f, const int64_t *chunk, unsigned ch
       return status;
   }
   vxm_zarr_key(key, &s->array, chunk);
-  return vxm_new_folder_put(&s->folder, key, bytes, size)
+  return vxm_atomic_folder_put(&s->folder, key, bytes, size)
              ? VXM_OK
              : vxm_fail_errno(error, f->writer->path, "cannot write");
 }
@@ -251,7 +251,7 @@ static vxm_status put_text(const vxm_values_writer *w, const char *name, char *t
     return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
   size_t size = strlen(text);
   text[size] = '\n'; /* in the place of the zero byte */
-  if (!vxm_new_folder_put(&s->folder, name, text, size + 1))
+  if (!vxm_atomic_folder_put(&s->folder, name, text, size + 1))
     status = vxm_fail_errno(error, w->path, "cannot write");
   free(text);
   return status;
@@ -277,7 +277,7 @@ static void drop(vxm_values_writer *w) {
   if (!s)
     return;
   if (s->is_open)
-    vxm_new_folder_close(&s->folder);
+    vxm_atomic_folder_close(&s->folder);
   for (size_t r = 0; s->room && r < s->workers; r++)
     vxm_free(w->context, s->room[r]);
   vxm_free(w->context, s->room);

@@ -225,11 +225,11 @@ static vxm_status fill(vxm_soup *soup, const vxm_greedy_quads *rectangles, const
   return status;
 }
 
-static vxm_status build(vxm_soup *soup, const vxm_grid *grid, unsigned how, vxm_error *error) {
+static vxm_status build(vxm_soup *soup, const vxm_grid *grid, unsigned flags, vxm_error *error) {
   vxm_greedy_quads rectangles;
   vxm_quad_vertices corners;
   vxm_split_vertices split;
-  const bool splits = how & VXM_SURFACE_MANIFOLD;
+  const bool splits = flags & VXM_SURFACE_MESH_MANIFOLD;
   vxm_status status = vxm_greedy_quads_find(&rectangles, grid, error);
   if (status != VXM_OK)
     return status;
@@ -238,8 +238,8 @@ static vxm_status build(vxm_soup *soup, const vxm_grid *grid, unsigned how, vxm_
     if (splits)
       status = vxm_split_vertices_find(&split, &corners, grid, error);
     if (status == VXM_OK) {
-      status =
-          fill(soup, &rectangles, &corners, splits ? &split : NULL, grid, how & VXM_SURFACE_TRIANGLES, error);
+      status = fill(soup, &rectangles, &corners, splits ? &split : NULL, grid,
+                    flags & VXM_SURFACE_MESH_TRIANGLES, error);
       if (splits)
         vxm_split_vertices_destroy(&split);
     }
@@ -249,13 +249,13 @@ static vxm_status build(vxm_soup *soup, const vxm_grid *grid, unsigned how, vxm_
   return status;
 }
 
-vxm_status vxm_gridio_surface_mesh(vxm_soup **out, const vxm_grid *grid, unsigned how, vxm_error *error) {
+vxm_status vxm_gridio_surface_mesh(vxm_soup **out, const vxm_grid *grid, unsigned flags, vxm_error *error) {
   *out = NULL;
   vxm_soup *soup;
   vxm_status status = vxm_soup_create(&soup, grid->context, "grid", error);
   if (status != VXM_OK)
     return status;
-  status = build(soup, grid, how, error);
+  status = build(soup, grid, flags, error);
   if (status != VXM_OK) {
     vxm_soup_destroy(soup);
     return status;

@@ -137,9 +137,8 @@ static json_t *legend_line(const vxm_field *field, const legend *l, int number) 
   snprintf(text, sizeof text, "%.17g", label);
   if (number != OTHERS) {
     vxm_label_color_bytes(rgb, label);
-    name = label >= 1 && label <= (double)vxm_field_label_count(field)
-               ? vxm_field_label_name(field, (int64_t)label)
-               : "";
+    const vxm_label_table *table = &field->about.table;
+    name = label >= 1 && label <= (double)table->count ? vxm_label_table_name(table, (size_t)label) : "";
   }
   return json_pack("{s:s, s:o, s:o, s:I, s:i}", "label", number == OTHERS ? "" : text, "name",
                    vxm_page_text(number == OTHERS ? "all other labels" : name), "color", vxm_page_color(rgb),

@@ -20,9 +20,10 @@ typedef struct vxm_format {
   /** Fills an empty soup; on failure the caller destroys it. */
   vxm_status (*read)(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                      vxm_error *error);
-  /** Writes all of a soup, `how` being VXM_WRITE_ASCII and others; the caller commits the output or drops it.
+  /** Writes all of a soup, `flags` being VXM_WRITE_ASCII and others; the caller commits the output or drops
+   * it.
    */
-  vxm_status (*write)(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error);
+  vxm_status (*write)(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error);
 } vxm_format;
 
 vxm_likeness vxm_off_sniff(const unsigned char *data, size_t size);
@@ -39,9 +40,9 @@ vxm_status vxm_stl_read(vxm_soup *soup, const unsigned char *data, size_t size, 
 vxm_status vxm_ply_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error);
 
-vxm_status vxm_off_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error);
-vxm_status vxm_obj_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error);
-vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error);
-vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error);
+vxm_status vxm_off_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error);
+vxm_status vxm_obj_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error);
+vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error);
+vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error);
 
 #endif

@@ -65,13 +65,13 @@ static void note(const vxm_tokenizer *scan, const char *unit, int64_t where, con
     vxm_warn(&scan->soup->warnings, "%s %" PRId64 ": %s", unit, where, what);
 }
 
-void vxm_text_defect_note_line(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
+void vxm_text_defect_warn_line(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
                                const char *things) {
   if (tally->count > 0)
     note(scan, "line", vxm_tokenizer_line(scan, tally->first), tally, what, things);
 }
 
-void vxm_text_defect_note_byte(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
+void vxm_text_defect_warn_byte(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
                                const char *things) {
   if (tally->count > 0)
     note(scan, "byte", (int64_t)(tally->first - scan->begin), tally, what, things);

@@ -49,10 +49,10 @@ static inline void vxm_text_defect_add(vxm_text_defect *tally, const unsigned ch
 /**
  * Adds "line 12: WHAT" or "line 12: WHAT, 3 THINGS in all" to the warnings; nothing if the tally is empty.
  */
-void vxm_text_defect_note_line(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
+void vxm_text_defect_warn_line(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
                                const char *things);
-/** As vxm_text_defect_note_line with "byte 123: ". */
-void vxm_text_defect_note_byte(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
+/** As vxm_text_defect_warn_line with "byte 123: ". */
+void vxm_text_defect_warn_byte(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
                                const char *things);
 
 /** Notes that the bytes look as if a program had taken them for text, if they do. */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Wavefront OBJ: vertices and polygons, with groups and materials as face tags, and colours where they are
  * asked for; the rest is passed over. */
-#include "meshio/common/cut.h"
 #include "meshio/common/format.h"
 #include "meshio/common/tags.h"
 #include "meshio/common/tokenizer.h"
+#include "meshio/common/truncation.h"
 #include "meshio/formats/obj_colors.h"
 
 #include <inttypes.h>
@@ -343,7 +343,7 @@ static vxm_status note_cut(const obj_reader *reader, vxm_error *error) {
       reader->zero.count + reader->beyond.count + reader->small_faces.count + reader->bad_faces.count > 0;
   if (no_line_end &&
       (unused > 0 || reader->last_vertex ||
-       (reader->ends_in_face && (ends_in_part_of_corner(scan) || vxm_last_index_may_be_cut(soup, 1) ||
+       (reader->ends_in_face && (ends_in_part_of_corner(scan) || vxm_last_index_may_be_truncated(soup, 1) ||
                                  vxm_last_face_may_be_short(soup)))))
     vxm_warn(&soup->warnings,
              "line %" PRId64 ": the file ends without a line end; its last line may be cut off",
@@ -373,16 +373,16 @@ static vxm_status finish(obj_reader *reader, vxm_error *error) {
   drop_beyond(reader);
   if (soup->face_count == 0)
     vxm_tags_drop(soup);
-  vxm_text_defect_note_line(scan, &reader->numbers, "coordinate is not a number; taken as NaN", "numbers");
-  vxm_text_defect_note_line(scan, &reader->flat, "vertex has two coordinates; z taken as 0", "vertices");
-  vxm_text_defect_note_line(scan, &reader->short_vertices, "vertex has too few coordinates; taken as NaN",
+  vxm_text_defect_warn_line(scan, &reader->numbers, "coordinate is not a number; taken as NaN", "numbers");
+  vxm_text_defect_warn_line(scan, &reader->flat, "vertex has two coordinates; z taken as 0", "vertices");
+  vxm_text_defect_warn_line(scan, &reader->short_vertices, "vertex has too few coordinates; taken as NaN",
                             "vertices");
-  vxm_text_defect_note_line(scan, &reader->zero, "face names vertex 0 (numbering starts at 1); skipped",
+  vxm_text_defect_warn_line(scan, &reader->zero, "face names vertex 0 (numbering starts at 1); skipped",
                             "faces");
-  vxm_text_defect_note_line(scan, &reader->beyond, "face names a vertex that does not exist; skipped",
+  vxm_text_defect_warn_line(scan, &reader->beyond, "face names a vertex that does not exist; skipped",
                             "faces");
-  vxm_text_defect_note_line(scan, &reader->small_faces, "face has fewer than 3 corners; skipped", "faces");
-  vxm_text_defect_note_line(scan, &reader->bad_faces, "face has a corner that is no vertex number; skipped",
+  vxm_text_defect_warn_line(scan, &reader->small_faces, "face has fewer than 3 corners; skipped", "faces");
+  vxm_text_defect_warn_line(scan, &reader->bad_faces, "face has a corner that is no vertex number; skipped",
                             "faces");
   if (soup->face_count == 0 && reader->lines_and_points > 0)
     vxm_warn(&soup->warnings, "the file has no faces, only %" PRIu64 " lines (l) or points (p)",

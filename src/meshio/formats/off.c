@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** OFF as text: by lines where the file keeps to lines, by tokens where it does not. */
 #include "meshio/formats/off.h"
-#include "meshio/common/cut.h"
 #include "meshio/common/format.h"
+#include "meshio/common/truncation.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -316,7 +316,7 @@ static vxm_status read_faces(vxm_tokenizer *scan, uint64_t faces, uint64_t *done
     if (status == VXM_OK)
       status = vxm_tokenizer_progress(scan, error);
     if (outcome == FACE_READ && *done + 1 == faces && ends_in_index(scan, first, n) &&
-        vxm_last_index_may_be_cut(soup, 0))
+        vxm_last_index_may_be_truncated(soup, 0))
       vxm_text_defect_add(&damage->cut, first);
   }
   scan->end = end;
@@ -336,17 +336,17 @@ static void note_damage(vxm_tokenizer *scan, const vxm_off_header *header, const
   if (header->dimension < 3)
     vxm_warn(warnings, "line %" PRId64 ": vertices have %zu coordinates; the missing ones are 0", line,
              header->dimension);
-  vxm_text_defect_note_line(scan, &damage->numbers, "coordinate is not a number; taken as NaN", "numbers");
-  vxm_text_defect_note_line(scan, &damage->short_vertices, "vertex has too few coordinates; taken as NaN",
+  vxm_text_defect_warn_line(scan, &damage->numbers, "coordinate is not a number; taken as NaN", "numbers");
+  vxm_text_defect_warn_line(scan, &damage->short_vertices, "vertex has too few coordinates; taken as NaN",
                             "vertices");
-  vxm_text_defect_note_line(scan, &damage->bad_faces, "face is not a list of whole numbers; skipped",
+  vxm_text_defect_warn_line(scan, &damage->bad_faces, "face is not a list of whole numbers; skipped",
                             "faces");
-  vxm_text_defect_note_line(scan, &damage->short_faces, "face has fewer indices than it announces; skipped",
+  vxm_text_defect_warn_line(scan, &damage->short_faces, "face has fewer indices than it announces; skipped",
                             "faces");
-  vxm_text_defect_note_line(scan, &damage->beyond, "face names a vertex that does not exist; skipped",
+  vxm_text_defect_warn_line(scan, &damage->beyond, "face names a vertex that does not exist; skipped",
                             "faces");
-  vxm_text_defect_note_line(scan, &damage->small_faces, "face has fewer than 3 corners; skipped", "faces");
-  vxm_text_defect_note_line(scan, &damage->cut,
+  vxm_text_defect_warn_line(scan, &damage->small_faces, "face has fewer than 3 corners; skipped", "faces");
+  vxm_text_defect_warn_line(scan, &damage->cut,
                             "the file ends without a line end; its last number may be cut off", "");
 }
 

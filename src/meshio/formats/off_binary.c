@@ -131,8 +131,8 @@ vxm_status vxm_off_read_binary(vxm_tokenizer *scan, vxm_off_header *header, vxm_
   if (header->dimension != 3)
     vxm_warn(&soup->warnings, "vertices have %zu coordinates; only x y z are kept, missing ones are 0",
              header->dimension);
-  vxm_text_defect_note_byte(scan, &beyond, "face names a vertex that does not exist; skipped", "faces");
-  vxm_text_defect_note_byte(scan, &small, "face has fewer than 3 corners; skipped", "faces");
+  vxm_text_defect_warn_byte(scan, &beyond, "face names a vertex that does not exist; skipped", "faces");
+  vxm_text_defect_warn_byte(scan, &small, "face has fewer than 3 corners; skipped", "faces");
   int64_t offset = (int64_t)(face - scan->begin);
   if (done < faces && soup->face_count == 0)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){scan->name, 0, offset, (int64_t)done},

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** PLY: header, body and what they came to. */
 #include "meshio/formats/ply.h"
-#include "meshio/common/cut.h"
 #include "meshio/common/format.h"
+#include "meshio/common/truncation.h"
 
 #include <inttypes.h>
 
@@ -47,8 +47,8 @@ typedef void note_fn(const vxm_tokenizer *scan, const vxm_text_defect *tally, co
                      const char *things);
 
 static void note_damage(const vxm_tokenizer *scan, const vxm_ply_header *header, const vxm_ply_body *body) {
-  note_fn *note = header->ascii ? vxm_text_defect_note_line : vxm_text_defect_note_byte;
-  vxm_text_defect_note_line(scan, &header->no_corners, "faces have no list vertex_indices; passed over",
+  note_fn *note = header->ascii ? vxm_text_defect_warn_line : vxm_text_defect_warn_byte;
+  vxm_text_defect_warn_line(scan, &header->no_corners, "faces have no list vertex_indices; passed over",
                             "elements");
   note(scan, &body->numbers, "coordinate is not a number; taken as NaN", "numbers");
   note(scan, &body->short_lines, "line has fewer values than the header says", "lines");
@@ -107,7 +107,7 @@ static vxm_status finish(vxm_tokenizer *scan, const vxm_ply_header *header, vxm_
   if (!header->ascii && (body->cut || body->beyond.count > 0))
     vxm_warn_text_conversion(scan);
   if (body->last && vxm_last_token(scan) < scan->end &&
-      (body->faces_first || vxm_last_index_may_be_cut(soup, 0)))
+      (body->faces_first || vxm_last_index_may_be_truncated(soup, 0)))
     vxm_warn(&soup->warnings,
              "line %" PRId64 ": the file ends without a line end; its last number may be cut off",
              vxm_tokenizer_line(scan, body->last));

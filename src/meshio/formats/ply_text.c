@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The body of an ascii PLY: one element to a line, or any run of tokens where the file does not keep to
  * that. */
-#include "meshio/common/cut.h"
+#include "meshio/common/truncation.h"
 #include "meshio/formats/ply.h"
 
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** STL as text: words in any case, any number of solids, facets of any size. */
-#include "meshio/common/cut.h"
 #include "meshio/common/tags.h"
+#include "meshio/common/truncation.h"
 #include "meshio/formats/stl.h"
 
 #include <inttypes.h>
@@ -156,13 +156,13 @@ static vxm_status read_word(text_reader *reader, vxm_error *error) {
 
 static void note_damage(text_reader *reader, bool cut_off) {
   const vxm_tokenizer *scan = reader->scan;
-  vxm_text_defect_note_line(scan, &reader->numbers, "facet has a coordinate that is not a number; skipped",
+  vxm_text_defect_warn_line(scan, &reader->numbers, "facet has a coordinate that is not a number; skipped",
                             "facets");
-  vxm_text_defect_note_line(scan, &reader->small, "facet has fewer than 3 vertices; skipped", "facets");
-  vxm_text_defect_note_line(scan, &reader->polygons, "facet has more than 3 vertices; kept as a polygon",
+  vxm_text_defect_warn_line(scan, &reader->small, "facet has fewer than 3 vertices; skipped", "facets");
+  vxm_text_defect_warn_line(scan, &reader->polygons, "facet has more than 3 vertices; kept as a polygon",
                             "facets");
-  vxm_text_defect_note_line(scan, &reader->stray, "vertex outside of a facet; skipped", "vertices");
-  vxm_text_defect_note_line(scan, &reader->unknown, "word that STL does not have; ignored", "words");
+  vxm_text_defect_warn_line(scan, &reader->stray, "vertex outside of a facet; skipped", "vertices");
+  vxm_text_defect_warn_line(scan, &reader->unknown, "word that STL does not have; ignored", "words");
   if (cut_off)
     vxm_warn(&reader->soup->warnings, "line %" PRId64 ": the file ends within a facet",
              vxm_tokenizer_line(scan, scan->end));

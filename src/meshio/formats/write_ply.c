@@ -4,7 +4,7 @@
 #include "meshio/common/faces_out.h"
 #include "meshio/common/format.h"
 #include "meshio/common/text_out.h"
-#include "meshio/common/write_how.h"
+#include "meshio/common/write_flags.h"
 
 #include <inttypes.h>
 
@@ -18,14 +18,14 @@ static size_t largest_face(const vxm_soup *soup) {
   return largest;
 }
 
-static void write_header(const vxm_soup *soup, vxm_output *output, unsigned how, bool long_lists) {
+static void write_header(const vxm_soup *soup, vxm_output *output, unsigned flags, bool long_lists) {
   vxm_output_printf(output, "ply\nformat %s 1.0\ncomment voxmend\nelement vertex %zu\n",
-                    how & VXM_WRITE_ASCII ? "ascii" : "binary_little_endian", soup->vertex_count);
+                    flags & VXM_WRITE_ASCII ? "ascii" : "binary_little_endian", soup->vertex_count);
   for (int c = 'x'; c <= 'z'; c++)
     vxm_output_printf(output, "property double %c\n", c);
   /* Readers know int for indices best; uint is for those beyond it. */
   vxm_output_printf(output, "element face %" PRIu64 "\nproperty list %s %s vertex_indices\nend_header\n",
-                    vxm_faces_out_count(soup, how & VXM_WRITE_POLYGONS), long_lists ? "uint" : "uchar",
+                    vxm_faces_out_count(soup, flags & VXM_WRITE_POLYGONS), long_lists ? "uint" : "uchar",
                     soup->vertex_count > INT32_MAX ? "uint" : "int");
 }
 
@@ -87,16 +87,16 @@ static vxm_status write_binary(vxm_faces_out *faces, vxm_output *output, bool lo
   return status;
 }
 
-vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
-  size_t largest = how & VXM_WRITE_POLYGONS ? largest_face(soup) : 3;
+vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error) {
+  size_t largest = flags & VXM_WRITE_POLYGONS ? largest_face(soup) : 3;
   if (largest > UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "a face has %zu corners, more than PLY can hold", largest);
   bool long_lists = largest > UINT8_MAX;
   vxm_faces_out faces;
-  vxm_faces_out_open(&faces, soup, how & VXM_WRITE_POLYGONS);
-  write_header(soup, output, how, long_lists);
-  vxm_status status = how & VXM_WRITE_ASCII ? write_text(&faces, output, error)
-                                            : write_binary(&faces, output, long_lists, error);
+  vxm_faces_out_open(&faces, soup, flags & VXM_WRITE_POLYGONS);
+  write_header(soup, output, flags, long_lists);
+  vxm_status status = flags & VXM_WRITE_ASCII ? write_text(&faces, output, error)
+                                              : write_binary(&faces, output, long_lists, error);
   vxm_faces_out_close(&faces);
   return status;
 }

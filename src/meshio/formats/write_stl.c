@@ -7,7 +7,7 @@
 #include "meshio/common/faces_out.h"
 #include "meshio/common/format.h"
 #include "meshio/common/text_out.h"
-#include "meshio/common/write_how.h"
+#include "meshio/common/write_flags.h"
 #include "meshio/formats/stl.h"
 
 #include <float.h>
@@ -108,8 +108,8 @@ static vxm_status write_facets(stl_writer *writer, vxm_error *error) {
   return status;
 }
 
-vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
-  const bool ascii = how & VXM_WRITE_ASCII;
+vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error) {
+  const bool ascii = flags & VXM_WRITE_ASCII;
   stl_writer writer = {.soup = soup, .output = output, .ascii = ascii};
   uint32_t facets = 0;
   vxm_status status = check_range(soup, error);

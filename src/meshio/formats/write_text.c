@@ -3,7 +3,7 @@
 #include "meshio/common/faces_out.h"
 #include "meshio/common/format.h"
 #include "meshio/common/text_out.h"
-#include "meshio/common/write_how.h"
+#include "meshio/common/write_flags.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -77,24 +77,24 @@ static vxm_status write_obj(vxm_text_out *text, vxm_faces_out *faces, vxm_error 
 
 typedef vxm_status (*write_all)(vxm_text_out *text, vxm_faces_out *faces, vxm_error *error);
 
-static vxm_status write_as(write_all write, const vxm_soup *soup, vxm_output *output, unsigned how,
+static vxm_status write_as(write_all write, const vxm_soup *soup, vxm_output *output, unsigned flags,
                            vxm_error *error) {
   vxm_text_out text;
   vxm_faces_out faces;
   vxm_status status = vxm_text_open(&text, soup, output, error);
   if (status != VXM_OK)
     return status;
-  vxm_faces_out_open(&faces, soup, how & VXM_WRITE_POLYGONS);
+  vxm_faces_out_open(&faces, soup, flags & VXM_WRITE_POLYGONS);
   status = write(&text, &faces, error);
   vxm_faces_out_close(&faces);
   vxm_text_close(&text);
   return status;
 }
 
-vxm_status vxm_off_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
-  return write_as(write_off, soup, output, how, error);
+vxm_status vxm_off_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error) {
+  return write_as(write_off, soup, output, flags, error);
 }
 
-vxm_status vxm_obj_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
-  return write_as(write_obj, soup, output, how, error);
+vxm_status vxm_obj_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error) {
+  return write_as(write_obj, soup, output, flags, error);
 }

@@ -7,7 +7,7 @@
 
 /** Replaces %XX by the byte it stands for, once; what is no code stays, as does %00, with which a name would
  * end early. The name is then looked up as any other: ".." that was written as a code leads no farther.
- * `decode` in src/cli/names.c does the same. */
+ * `decode` in src/cli/file_conflicts.c does the same. */
 void vxm_uri_decode(char *name);
 
 /** Whether the URI holds the data itself, in base64: "data:...;base64,...". */

@@ -28,7 +28,7 @@ struct Stopped : std::bad_alloc {
   vxm_status status;
 };
 
-/** Throws Stopped unless a call into the base room went well. */
+/** Throws Stopped unless a call into the base folder went well. */
 inline void check(vxm_status status) {
   if (status != VXM_OK)
     throw Stopped(status);

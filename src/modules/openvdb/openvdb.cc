@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The module "openvdb" (gridio/formats/vdb.h): trees of OpenVDB, made of blocks and written to a file.
+/** The module "openvdb" (gridio/formats/vdb/vdb.h): trees of OpenVDB, made of blocks and written to a file.
  * openvdb_read.cc reads. */
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>

@@ -6,7 +6,7 @@
 #include <exception>
 #include <new>
 
-#include "gridio/formats/vdb.h"
+#include "gridio/formats/vdb/vdb.h"
 
 /** A failure that is described already. */
 struct vxm_vdb_failure {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/layers.h"
 
-#include "repair/state/set_sides.h"
+#include "repair/state/face_set_sides.h"
 
 #include <stdlib.h>
 
@@ -39,7 +39,7 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
 }
 
 /** Lists some faces of each patch, spread over it, and all that count. @param size scratch per face, twice */
-static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, size_t *size) {
+static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_face_set_side *sets, size_t *size) {
   size_t faces = l->state->soup->face_count, count = 0, *seen = size + faces;
   for (size_t f = 0; f < faces; f++) {
     int64_t surplus = vxm_layers_surplus(l, f);
@@ -51,14 +51,14 @@ static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, si
       continue;
     size_t root = vxm_set_of(l->patch, f), step = size[root] / SAMPLES + 1;
     if (seen[root]++ % step == 0)
-      sets[count++] = (vxm_set_side){.face = f, .set = root};
+      sets[count++] = (vxm_face_set_side){.face = f, .set = root};
   }
   return count;
 }
 
 /** Takes what most of the samples of a patch say; where none has sides that differ by its copies, finds
  * between what they lie. */
-static void take_answers(vxm_layers *l, const vxm_set_side *sets, size_t count, int32_t *reach) {
+static void take_answers(vxm_layers *l, const vxm_face_set_side *sets, size_t count, int32_t *reach) {
   size_t root = sets[0].set;
   int64_t surplus = vxm_layers_surplus(l, root);
   int most = 0;
@@ -78,18 +78,18 @@ static void take_answers(vxm_layers *l, const vxm_set_side *sets, size_t count, 
 }
 
 static int by_set_then_face(const void *a, const void *b) {
-  const vxm_set_side *s = a, *t = b;
+  const vxm_face_set_side *s = a, *t = b;
   if (s->set != t->set)
     return s->set < t->set ? -1 : 1;
   return s->face < t->face ? -1 : s->face > t->face;
 }
 
-static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, size_t *size, int32_t *reach,
-                              vxm_error *error) {
+static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *sets, size_t *size,
+                              int32_t *reach, vxm_error *error) {
   size_t count = list_samples(l, bound, sets, size);
   vxm_status status = vxm_ask(l->state->context, error);
   if (status == VXM_OK)
-    status = vxm_set_sides_find(sets, count, l->state, l->groups, bound, error);
+    status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, error);
   if (status != VXM_OK)
     return status;
   qsort(sets, count, sizeof *sets, by_set_then_face);
@@ -106,7 +106,7 @@ static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_set_side *sets,
 vxm_status vxm_layers_find(vxm_layers *layers, vxm_error *error) {
   vxm_repair_state *state = layers->state;
   size_t faces = state->soup->face_count;
-  vxm_set_side *sets = NULL;
+  vxm_face_set_side *sets = NULL;
   size_t *size = NULL;
   int32_t *reach = NULL;
   vxm_status status = find_patches(layers, error);

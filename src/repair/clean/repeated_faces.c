@@ -3,7 +3,7 @@
 
 #include "mesh/geometry.h"
 #include "repair/state/edge_groups.h"
-#include "repair/state/set_sides.h"
+#include "repair/state/face_set_sides.h"
 
 #include <string.h>
 
@@ -289,13 +289,13 @@ static bool is_asked(const deciding *d, size_t face) {
 }
 
 /** Asks one face of a fin, or all of them, whether they lie within the solid. */
-static vxm_status ask(deciding *d, vxm_set_side *sets, size_t asked, const uint8_t *bound, uint8_t *within,
-                      vxm_error *error) {
-  vxm_status status = vxm_set_sides_find(sets, asked, d->state, &d->groups, bound, error);
+static vxm_status ask(deciding *d, vxm_face_set_side *sets, size_t asked, const uint8_t *bound,
+                      uint8_t *within, vxm_error *error) {
+  vxm_status status = vxm_face_set_sides_find(sets, asked, d->state, &d->groups, bound, error);
   for (size_t i = 0; status == VXM_OK && i < asked; i++)
     within[sets[i].set] = 1;
   for (size_t i = 0; status == VXM_OK && i < asked; i++) {
-    const vxm_set_side *s = &sets[i];
+    const vxm_face_set_side *s = &sets[i];
     /* between a room and another one that is inside out */
     bool wall = may_be_wall(d, s->face) ? s->front == -1 && s->back == 1 : s->within;
     within[s->set] = within[s->set] && wall;
@@ -309,7 +309,7 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t faces = d->soup->face_count, asked = 0;
   uint8_t *bound = vxm_repair_state_scratch(d->state, faces, sizeof *bound, &status, error);
-  vxm_set_side *sets = NULL;
+  vxm_face_set_side *sets = NULL;
   for (size_t face = 0; bound && face < faces; face++) {
     bound[face] = bounds(d, face);
     asked += is_asked(d, face);
@@ -322,7 +322,7 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
       size_t root = vxm_set_of(d->parent, face);
       bool wall = may_be_wall(d, face);
       sets[asked++] =
-          (vxm_set_side){.face = wall ? face : d->fins[root].largest, .set = root, .asks_within = !wall};
+          (vxm_face_set_side){.face = wall ? face : d->fins[root].largest, .set = root, .asks_within = !wall};
     }
   if (sets)
     status = ask(d, sets, asked, bound, within, error);

@@ -3,7 +3,7 @@
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
 #include "repair/exact/wrap.h"
-#include "repair/state/faces_taken.h"
+#include "repair/state/face_subset.h"
 #include "repair/state/repair_state.h"
 #include "repair/state/self_intersections.h"
 
@@ -119,11 +119,11 @@ static vxm_status append(vxm_soup *rest, uint64_t **origin, const vxm_soup *wrap
 static vxm_status wrap_marked(vxm_repair_state *state, const uint8_t *faces, vxm_error *error) {
   vxm_soup *parts = NULL, *rest = NULL, *wrap = NULL;
   uint64_t *numbers = NULL, *origin = NULL, *nearest = NULL;
-  vxm_status status = vxm_faces_taken(&parts, &numbers, state->soup, faces, 1, error);
+  vxm_status status = vxm_face_subset_create(&parts, &numbers, state->soup, faces, 1, error);
   if (status == VXM_OK)
     status = vxm_wrap_soup(&wrap, &nearest, parts, state->options.fallback_alpha, 0, error);
   if (status == VXM_OK)
-    status = vxm_faces_taken(&rest, &origin, state->soup, faces, 0, error);
+    status = vxm_face_subset_create(&rest, &origin, state->soup, faces, 0, error);
   if (status == VXM_OK)
     status = append(rest, &origin, wrap, nearest, numbers, error);
   if (status == VXM_OK) {

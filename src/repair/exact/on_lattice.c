@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/exact/on_lattice.h"
 
-#include "repair/state/merge_places.h"
+#include "repair/state/merge_rule.h"
 #include "repair/state/self_intersections.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/geometry.h"
-#include "repair/state/merge_places.h"
+#include "repair/state/merge_rule.h"
 #include "repair/state/repair_state.h"
 
 #include <stdlib.h>
@@ -73,7 +73,7 @@ static bool is_float_point(const collapsing *c, const vxm_edge *edge) {
   if (c->state->doubles_only)
     return false;
   for (int i = 0; i < 3; i++)
-    if (vxm_merge_place(a[i], VXM_MERGE_FLOAT) != vxm_merge_place(b[i], VXM_MERGE_FLOAT))
+    if (vxm_merge_coordinate(a[i], VXM_MERGE_FLOAT) != vxm_merge_coordinate(b[i], VXM_MERGE_FLOAT))
       return false;
   return true;
 }

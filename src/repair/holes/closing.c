@@ -2,7 +2,7 @@
 #include "repair/external/cgal.h"
 #include "repair/external/openmesh.h"
 #include "repair/holes/fill_fans.h"
-#include "repair/state/faces_taken.h"
+#include "repair/state/face_subset.h"
 #include "repair/state/vertex_fans.h"
 
 #include <string.h>
@@ -89,7 +89,7 @@ static vxm_status fill_by_module(vxm_repair_state *state, const uint8_t *sheets,
   uint64_t *numbers, *origin = NULL;
   vxm_status status = check_manifold(state, error);
   if (status == VXM_OK)
-    status = vxm_faces_taken(&rest, &numbers, state->soup, sheets, 0, error);
+    status = vxm_face_subset_create(&rest, &numbers, state->soup, sheets, 0, error);
   if (status != VXM_OK)
     return status;
   status = call_module(&filled, &origin, state, rest, most, error);

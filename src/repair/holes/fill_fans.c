@@ -4,7 +4,7 @@
 #include "mesh/caps.h"
 #include "mesh/components.h"
 #include "mesh/geometry.h"
-#include "repair/state/position_hash.h"
+#include "repair/state/position_set.h"
 
 #include <string.h>
 
@@ -114,10 +114,10 @@ static bool is_wanted(const closing *c, size_t loop) {
 /* ---- New vertices: none may have the position of another one, or welding would merge them ---- */
 
 /** Moves a taken position a little and a little more toward a vertex, until it is free. */
-static void find_free(const vxm_repair_state *state, const vxm_position_hash *places, double p[3],
+static void find_free(const vxm_repair_state *state, const vxm_position_set *taken, double p[3],
                       const double *toward) {
   double from[3] = {p[0], p[1], p[2]}, part = 0x1p-12;
-  for (int tries = 0; tries < 64 && vxm_position_hash_taken(places, p); tries++, part *= 1.25)
+  for (int tries = 0; tries < 64 && vxm_position_set_taken(taken, p); tries++, part *= 1.25)
     for (int a = 0; a < 3; a++)
       p[a] = vxm_repair_state_round(state, from[a] + part * (toward[a] - from[a]));
 }
@@ -166,7 +166,7 @@ static bool make_room(closing *c, size_t faces, size_t points) {
 
 /** Adds the cap of a loop, of which there is room; `first` is the number that new vertices were planned
  * from. */
-static void add_cap(closing *c, vxm_position_hash *places, size_t loop, size_t first) {
+static void add_cap(closing *c, vxm_position_set *taken, size_t loop, size_t first) {
   vxm_soup *soup = c->soup;
   size_t begin = c->loops.begin[loop], planned = first + c->points[loop], number = soup->vertex_count;
   for (size_t k = c->points[loop]; k < c->points[loop + 1]; k++) {
@@ -176,9 +176,9 @@ static void add_cap(closing *c, vxm_position_hash *places, size_t loop, size_t f
     const double *toward = vxm_position(soup, c->loops.vertex[begin]);
     if (memcmp(toward, p, 3 * sizeof *p) == 0) /* any other place on the rim does as well */
       toward = vxm_position(soup, c->loops.vertex[begin + 1]);
-    find_free(c->state, places, p, toward);
+    find_free(c->state, taken, p, toward);
     memcpy(soup->positions + 3 * soup->vertex_count, p, 3 * sizeof *p);
-    vxm_position_hash_add(places, (uint32_t)soup->vertex_count++);
+    vxm_position_set_add(taken, (uint32_t)soup->vertex_count++);
   }
   for (size_t t = c->triangles[loop]; t < c->triangles[loop + 1]; t++) {
     size_t beside = c->edge_face[c->loops.edge[begin]];
@@ -203,19 +203,18 @@ static bool add_caps(closing *c) {
     }
   if (faces == 0)
     return true;
-  vxm_position_hash places;
-  bool ready =
-      vxm_position_hash_open(&places, c->soup, first + points, VXM_MERGE_EXACT, &c->error) == VXM_OK &&
-      make_room(c, faces, points);
+  vxm_position_set taken;
+  bool ready = vxm_position_set_open(&taken, c->soup, first + points, VXM_MERGE_EXACT, &c->error) == VXM_OK &&
+               make_room(c, faces, points);
   if (ready) {
     for (size_t v = 0; v < first && points > 0; v++)
-      vxm_position_hash_add(&places, (uint32_t)v);
+      vxm_position_set_add(&taken, (uint32_t)v);
     for (size_t l = 0; l < c->loops.count; l++)
       if (is_wanted(c, l))
-        add_cap(c, &places, l, first);
+        add_cap(c, &taken, l, first);
     c->state->counts[VXM_PASS_CLOSING] += (int64_t)faces;
   }
-  vxm_position_hash_close(&places);
+  vxm_position_set_close(&taken);
   return ready;
 }
 

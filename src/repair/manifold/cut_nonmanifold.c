@@ -9,7 +9,7 @@ enum { UNUSED = 0, WAITING = 1, TAKEN = 2 };
 
 /** Fans into vertices. */
 typedef struct numbering {
-  const vxm_halfedge_pairing *fans;
+  const vxm_halfedge_pairing *pairing;
   vxm_soup *soup;   /**< the result, with the corners of the input as yet */
   uint32_t *vertex; /**< per fan */
   uint8_t *state;   /**< per vertex of the input */
@@ -18,9 +18,9 @@ typedef struct numbering {
 /** The first fan of a vertex, by its lowest corner, keeps the number; others get new ones. */
 static vxm_status number_fans(numbering *n, int64_t *added, vxm_error *error) {
   vxm_soup *soup = n->soup;
-  memset(n->vertex, 0xff, n->fans->fan_count * sizeof *n->vertex);
+  memset(n->vertex, 0xff, n->pairing->fan_count * sizeof *n->vertex);
   for (size_t c = 0; c < soup->corner_count; c++) {
-    uint32_t v = soup->indices[c], *number = &n->vertex[n->fans->fan[c]];
+    uint32_t v = soup->indices[c], *number = &n->vertex[n->pairing->fan[c]];
     if (n->state[v] == UNUSED)
       n->state[v] = WAITING;
     if (*number == VXM_NO_VERTEX && n->state[v] == WAITING) {
@@ -37,7 +37,7 @@ static vxm_status number_fans(numbering *n, int64_t *added, vxm_error *error) {
     }
   }
   for (size_t c = 0; c < soup->corner_count; c++)
-    soup->indices[c] = n->vertex[n->fans->fan[c]];
+    soup->indices[c] = n->vertex[n->pairing->fan[c]];
   return VXM_OK;
 }
 
@@ -61,7 +61,7 @@ static vxm_status apply(numbering *n, int64_t *added, vxm_error *error) {
   size_t before = n->soup->vertex_count;
   vxm_error local = VXM_ERROR_INIT;
   uint32_t *map = NULL;
-  n->vertex = vxm_alloc(context, n->fans->fan_count, sizeof *n->vertex, &local);
+  n->vertex = vxm_alloc(context, n->pairing->fan_count, sizeof *n->vertex, &local);
   n->state = n->vertex ? vxm_calloc(context, before, sizeof *n->state, &local) : NULL;
   vxm_status status = n->state ? number_fans(n, added, &local) : local.code;
   if (status == VXM_OK) {
@@ -78,10 +78,10 @@ static vxm_status apply(numbering *n, int64_t *added, vxm_error *error) {
   return status;
 }
 
-static vxm_status copy_and_apply(vxm_soup **out, const vxm_halfedge_pairing *fans, int64_t *added,
+static vxm_status copy_and_apply(vxm_soup **out, const vxm_halfedge_pairing *pairing, int64_t *added,
                                  vxm_error *error) {
-  numbering n = {.fans = fans};
-  vxm_status status = vxm_soup_copy(&n.soup, fans->soup, error);
+  numbering n = {.pairing = pairing};
+  vxm_status status = vxm_soup_copy(&n.soup, pairing->soup, error);
   if (status == VXM_OK)
     status = apply(&n, added, error);
   if (status != VXM_OK) {
@@ -96,14 +96,14 @@ vxm_status vxm_cut_nonmanifold(vxm_soup **out, int64_t *split, int64_t *stitched
                                vxm_error *error) {
   *out = NULL;
   *split = *stitched = 0;
-  vxm_halfedge_pairing fans;
-  vxm_status status = vxm_halfedge_pairing_build(&fans, soup, error);
+  vxm_halfedge_pairing pairing;
+  vxm_status status = vxm_halfedge_pairing_build(&pairing, soup, error);
   if (status == VXM_OK)
-    status = vxm_halfedge_pairing_stitch(&fans, stitched, error);
+    status = vxm_halfedge_pairing_stitch(&pairing, stitched, error);
   if (status == VXM_OK)
-    status = copy_and_apply(out, &fans, split, error);
+    status = copy_and_apply(out, &pairing, split, error);
   if (status != VXM_OK)
     *split = *stitched = 0;
-  vxm_halfedge_pairing_destroy(&fans);
+  vxm_halfedge_pairing_destroy(&pairing);
   return status;
 }

@@ -16,7 +16,7 @@
 #define CORNERS_MAX ((size_t)1 << 30)
 
 typedef struct building {
-  vxm_halfedge_pairing *fans;
+  vxm_halfedge_pairing *pairing;
   vxm_error error;
   uint32_t *begin; /**< per vertex: where the sides whose lower end it is begin in `sides`; one more */
   uint64_t *sides; /**< by lower, then by higher end: the higher end << 32 | the side */
@@ -31,11 +31,11 @@ typedef struct span {
 } span;
 
 static void *allocate(building *b, size_t count, size_t size) {
-  return vxm_alloc(b->fans->soup->context, count, size, &b->error);
+  return vxm_alloc(b->pairing->soup->context, count, size, &b->error);
 }
 
 static bool progress(building *b, double fraction) {
-  return vxm_progress(b->fans->soup->context, "separating", fraction, &b->error) == VXM_OK;
+  return vxm_progress(b->pairing->soup->context, "separating", fraction, &b->error) == VXM_OK;
 }
 
 /* ---- Checks ---- */
@@ -48,7 +48,7 @@ static bool fail_face(building *b, size_t face) {
 
 /** Fills `face`, and looks at the faces; `seen` is scratch per vertex. */
 static bool number_corners(building *b, uint32_t *seen) {
-  const vxm_soup *soup = b->fans->soup;
+  const vxm_soup *soup = b->pairing->soup;
   memset(seen, 0xff, soup->vertex_count * sizeof *seen);
   for (size_t f = 0; f < soup->face_count; f++) {
     if (soup->offsets[f + 1] - soup->offsets[f] < 3)
@@ -57,7 +57,7 @@ static bool number_corners(building *b, uint32_t *seen) {
       if (seen[soup->indices[c]] == f)
         return fail_face(b, f);
       seen[soup->indices[c]] = (uint32_t)f;
-      b->fans->face[c] = (uint32_t)f;
+      b->pairing->face[c] = (uint32_t)f;
     }
   }
   return true;
@@ -78,11 +78,11 @@ static double find_scale(const vxm_soup *soup) {
 /* ---- Sides by edge ---- */
 
 static bool sort_sides(building *b) {
-  const vxm_soup *soup = b->fans->soup;
+  const vxm_soup *soup = b->pairing->soup;
   size_t largest = 0;
   memset(b->begin, 0, (soup->vertex_count + 1) * sizeof *b->begin);
   for (uint32_t c = 0; c < soup->corner_count; c++) {
-    uint32_t u = soup->indices[c], v = soup->indices[vxm_halfedge_pairing_next(b->fans, c)];
+    uint32_t u = soup->indices[c], v = soup->indices[vxm_halfedge_pairing_next(b->pairing, c)];
     b->begin[(u < v ? u : v) + 1]++;
   }
   for (size_t v = 0; v < soup->vertex_count; v++) {
@@ -90,7 +90,7 @@ static bool sort_sides(building *b) {
     b->begin[v + 1] += b->begin[v];
   }
   for (uint32_t c = 0; c < soup->corner_count; c++) {
-    uint32_t u = soup->indices[c], v = soup->indices[vxm_halfedge_pairing_next(b->fans, c)];
+    uint32_t u = soup->indices[c], v = soup->indices[vxm_halfedge_pairing_next(b->pairing, c)];
     b->sides[b->begin[u < v ? u : v]++] = (uint64_t)(u < v ? v : u) << 32 | c;
   }
   memmove(b->begin + 1, b->begin, soup->vertex_count * sizeof *b->begin);
@@ -106,7 +106,7 @@ static bool sort_sides(building *b) {
 
 /** Goes on to the next edge; start with a span of zeros. */
 static bool next_span(const building *b, span *s) {
-  uint32_t count = (uint32_t)b->fans->soup->corner_count;
+  uint32_t count = (uint32_t)b->pairing->soup->corner_count;
   s->begin = s->end;
   if (s->begin == count)
     return false;
@@ -123,7 +123,7 @@ static uint32_t side_of(const building *b, uint32_t place) {
 }
 
 static bool is_forward(const building *b, const span *s, uint32_t side) {
-  return b->fans->soup->indices[side] == s->low;
+  return b->pairing->soup->indices[side] == s->low;
 }
 
 /* ---- Joining ---- */
@@ -147,54 +147,54 @@ static uint32_t join_plain(building *b) {
     uint32_t p = side_of(b, s.begin), q = side_of(b, s.begin + 1);
     if (is_forward(b, &s, p) == is_forward(b, &s, q))
       continue;
-    vxm_halfedge_pairing_join(b->fans, p, q);
-    b->patch[root_of(b->patch, b->fans->face[p])] = root_of(b->patch, b->fans->face[q]);
+    vxm_halfedge_pairing_join(b->pairing, p, q);
+    b->patch[root_of(b->patch, b->pairing->face[p])] = root_of(b->patch, b->pairing->face[q]);
   }
   return largest;
 }
 
 static void join_wedges(building *b) {
-  const vxm_soup *soup = b->fans->soup;
+  const vxm_soup *soup = b->pairing->soup;
   for (span s = {0}; next_span(b, &s);) {
     size_t count = s.end - s.begin;
     if (count < 3)
       continue;
     for (size_t i = 0; i < count; i++) {
-      uint32_t side = side_of(b, s.begin + (uint32_t)i), face = b->fans->face[side];
+      uint32_t side = side_of(b, s.begin + (uint32_t)i), face = b->pairing->face[side];
       b->around[i] = (vxm_radial_side){
           .side = side, .face = face, .group = root_of(b->patch, face), .forward = is_forward(b, &s, side)};
     }
     vxm_radial_sort_match(b->around, count, soup, vxm_position(soup, s.low), vxm_position(soup, s.high),
-                          b->fans->scale);
+                          b->pairing->scale);
     for (size_t i = 0; i < count; i++)
-      b->fans->partner[b->around[i].side] = b->around[i].partner;
+      b->pairing->partner[b->around[i].side] = b->around[i].partner;
   }
 }
 
 /* ---- Fans ---- */
 
 /** Gives a number to the fan of a corner. */
-static void label(vxm_halfedge_pairing *fans, uint32_t corner, uint32_t number) {
+static void label(vxm_halfedge_pairing *pairing, uint32_t corner, uint32_t number) {
   uint32_t first = corner;
-  for (uint32_t c = vxm_halfedge_pairing_before(fans, corner); c != VXM_NO_SIDE && c != corner;
-       c = vxm_halfedge_pairing_before(fans, c))
+  for (uint32_t c = vxm_halfedge_pairing_before(pairing, corner); c != VXM_NO_SIDE && c != corner;
+       c = vxm_halfedge_pairing_before(pairing, c))
     first = c;
-  if (vxm_halfedge_pairing_before(fans, first) != VXM_NO_SIDE)
+  if (vxm_halfedge_pairing_before(pairing, first) != VXM_NO_SIDE)
     first = corner;
-  fans->start[number] = first;
+  pairing->start[number] = first;
   uint32_t c = first;
   do {
-    fans->fan[c] = number;
-    c = vxm_halfedge_pairing_after(fans, c);
+    pairing->fan[c] = number;
+    c = vxm_halfedge_pairing_after(pairing, c);
   } while (c != VXM_NO_SIDE && c != first);
 }
 
-static void label_all(vxm_halfedge_pairing *fans) {
-  size_t corners = fans->soup->corner_count;
-  memset(fans->fan, 0xff, corners * sizeof *fans->fan);
+static void label_all(vxm_halfedge_pairing *pairing) {
+  size_t corners = pairing->soup->corner_count;
+  memset(pairing->fan, 0xff, corners * sizeof *pairing->fan);
   for (uint32_t c = 0; c < corners; c++)
-    if (fans->fan[c] == UINT32_MAX)
-      label(fans, c, fans->fan_count++);
+    if (pairing->fan[c] == UINT32_MAX)
+      label(pairing, c, pairing->fan_count++);
 }
 
 /* ---- Edges between the same two fans ---- */
@@ -205,13 +205,13 @@ typedef struct bond {
   uint32_t low_fan, high_fan; /**< at the ends of the edge */
 } bond;
 
-static void find_ends(const vxm_halfedge_pairing *fans, bond *p) {
+static void find_ends(const vxm_halfedge_pairing *pairing, bond *p) {
   if (p->forward != VXM_NO_SIDE) {
-    p->low_fan = fans->fan[p->forward];
-    p->high_fan = fans->fan[vxm_halfedge_pairing_next(fans, p->forward)];
+    p->low_fan = pairing->fan[p->forward];
+    p->high_fan = pairing->fan[vxm_halfedge_pairing_next(pairing, p->forward)];
   } else {
-    p->low_fan = fans->fan[vxm_halfedge_pairing_next(fans, p->backward)];
-    p->high_fan = fans->fan[p->backward];
+    p->low_fan = pairing->fan[vxm_halfedge_pairing_next(pairing, p->backward)];
+    p->high_fan = pairing->fan[p->backward];
   }
 }
 
@@ -229,33 +229,33 @@ static int by_ends(const void *a, const void *b) {
                                   : (p->backward > q->backward) - (p->backward < q->backward);
 }
 
-static void set_partner(vxm_halfedge_pairing *fans, const bond *p) {
+static void set_partner(vxm_halfedge_pairing *pairing, const bond *p) {
   if (p->forward != VXM_NO_SIDE)
-    fans->partner[p->forward] = p->backward;
+    pairing->partner[p->forward] = p->backward;
   if (p->backward != VXM_NO_SIDE)
-    fans->partner[p->backward] = p->forward;
+    pairing->partner[p->backward] = p->forward;
 }
 
 /** Exchanges the backward sides of two bonds between the same two fans, which cuts either fan in two. */
-static void exchange(vxm_halfedge_pairing *fans, bond *p, bond *q) {
+static void exchange(vxm_halfedge_pairing *pairing, bond *p, bond *q) {
   uint32_t backward = p->backward;
   p->backward = q->backward;
   q->backward = backward;
-  set_partner(fans, p);
-  set_partner(fans, q);
+  set_partner(pairing, p);
+  set_partner(pairing, q);
   uint32_t side = p->forward != VXM_NO_SIDE ? p->forward : p->backward,
-           end = vxm_halfedge_pairing_next(fans, side);
-  label(fans, side, fans->fan[side]);
-  label(fans, end, fans->fan[end]);
+           end = vxm_halfedge_pairing_next(pairing, side);
+  label(pairing, side, pairing->fan[side]);
+  label(pairing, end, pairing->fan[end]);
   side = q->forward != VXM_NO_SIDE ? q->forward : q->backward;
-  label(fans, side, fans->fan_count++);
-  label(fans, vxm_halfedge_pairing_next(fans, side), fans->fan_count++);
+  label(pairing, side, pairing->fan_count++);
+  label(pairing, vxm_halfedge_pairing_next(pairing, side), pairing->fan_count++);
 }
 
 static size_t list_bonds(building *b, const span *s) {
   size_t count = 0;
   for (uint32_t i = s->begin; i < s->end; i++) {
-    uint32_t side = side_of(b, i), partner = b->fans->partner[side];
+    uint32_t side = side_of(b, i), partner = b->pairing->partner[side];
     if (is_forward(b, s, side))
       b->bonds[count++] = (bond){.forward = side, .backward = partner};
     else if (partner == VXM_NO_SIDE)
@@ -264,19 +264,19 @@ static size_t list_bonds(building *b, const span *s) {
   return count;
 }
 
-static void part_bonds(vxm_halfedge_pairing *fans, bond *bonds, size_t count) {
+static void part_bonds(vxm_halfedge_pairing *pairing, bond *bonds, size_t count) {
   bool changed = true;
   while (changed) {
     changed = false;
     for (size_t i = 0; i < count; i++)
-      find_ends(fans, &bonds[i]);
+      find_ends(pairing, &bonds[i]);
     qsort(bonds, count, sizeof *bonds, by_ends);
     for (size_t i = 0; i + 1 < count; i++) {
-      find_ends(fans, &bonds[i]); /* an exchange before may have parted these already */
-      find_ends(fans, &bonds[i + 1]);
+      find_ends(pairing, &bonds[i]); /* an exchange before may have parted these already */
+      find_ends(pairing, &bonds[i + 1]);
       if (!have_same_ends(&bonds[i], &bonds[i + 1]))
         continue;
-      exchange(fans, &bonds[i], &bonds[i + 1]);
+      exchange(pairing, &bonds[i], &bonds[i + 1]);
       changed = true;
     }
   }
@@ -285,39 +285,40 @@ static void part_bonds(vxm_halfedge_pairing *fans, bond *bonds, size_t count) {
 static void part_fans(building *b) {
   for (span s = {0}; next_span(b, &s);)
     if (s.end - s.begin > 2)
-      part_bonds(b->fans, b->bonds, list_bonds(b, &s));
+      part_bonds(b->pairing, b->bonds, list_bonds(b, &s));
 }
 
 /* ---- All of it ---- */
 
 static bool allocate_all(building *b) {
-  const vxm_soup *soup = b->fans->soup;
-  vxm_halfedge_pairing *fans = b->fans;
-  fans->face = allocate(b, soup->corner_count, sizeof *fans->face);
-  fans->partner = allocate(b, soup->corner_count, sizeof *fans->partner);
-  fans->fan = allocate(b, soup->corner_count, sizeof *fans->fan);
-  fans->start = allocate(b, soup->corner_count, sizeof *fans->start);
+  const vxm_soup *soup = b->pairing->soup;
+  vxm_halfedge_pairing *pairing = b->pairing;
+  pairing->face = allocate(b, soup->corner_count, sizeof *pairing->face);
+  pairing->partner = allocate(b, soup->corner_count, sizeof *pairing->partner);
+  pairing->fan = allocate(b, soup->corner_count, sizeof *pairing->fan);
+  pairing->start = allocate(b, soup->corner_count, sizeof *pairing->start);
   b->begin = allocate(b, soup->vertex_count + 1, sizeof *b->begin);
   b->sides = allocate(b, soup->corner_count, sizeof *b->sides);
   b->patch = allocate(b, soup->face_count, sizeof *b->patch);
-  return fans->face && fans->partner && fans->fan && fans->start && b->begin && b->sides && b->patch;
+  return pairing->face && pairing->partner && pairing->fan && pairing->start && b->begin && b->sides &&
+         b->patch;
 }
 
 static bool build(building *b) {
-  const vxm_soup *soup = b->fans->soup;
+  const vxm_soup *soup = b->pairing->soup;
   if (!allocate_all(b) || !number_corners(b, b->begin) || !progress(b, 0.0) || !sort_sides(b))
     return false;
-  memset(b->fans->partner, 0xff, soup->corner_count * sizeof *b->fans->partner);
+  memset(b->pairing->partner, 0xff, soup->corner_count * sizeof *b->pairing->partner);
   for (uint32_t f = 0; f < soup->face_count; f++)
     b->patch[f] = f;
-  b->fans->scale = find_scale(soup);
+  b->pairing->scale = find_scale(soup);
   uint32_t largest = join_plain(b);
   b->around = allocate(b, largest, sizeof *b->around);
   b->bonds = allocate(b, largest, sizeof *b->bonds);
   if (!b->around || !b->bonds || !progress(b, 0.4))
     return false;
   join_wedges(b);
-  label_all(b->fans);
+  label_all(b->pairing);
   if (!progress(b, 0.7))
     return false;
   part_fans(b);
@@ -329,7 +330,7 @@ vxm_status vxm_halfedge_pairing_build(vxm_halfedge_pairing *out, const vxm_soup 
   if (soup->corner_count > CORNERS_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu corners; at most %zu can be separated: split the mesh",
                     soup->corner_count, CORNERS_MAX);
-  building b = {.fans = out, .error = VXM_ERROR_INIT};
+  building b = {.pairing = out, .error = VXM_ERROR_INIT};
   bool done = build(&b);
   vxm_free(soup->context, b.bonds);
   vxm_free(soup->context, b.around);
@@ -343,13 +344,13 @@ vxm_status vxm_halfedge_pairing_build(vxm_halfedge_pairing *out, const vxm_soup 
   return b.error.code;
 }
 
-void vxm_halfedge_pairing_destroy(vxm_halfedge_pairing *fans) {
-  if (!fans->soup)
+void vxm_halfedge_pairing_destroy(vxm_halfedge_pairing *pairing) {
+  if (!pairing->soup)
     return;
-  vxm_context *context = fans->soup->context;
-  vxm_free(context, fans->start);
-  vxm_free(context, fans->fan);
-  vxm_free(context, fans->partner);
-  vxm_free(context, fans->face);
-  *fans = (vxm_halfedge_pairing){0};
+  vxm_context *context = pairing->soup->context;
+  vxm_free(context, pairing->start);
+  vxm_free(context, pairing->fan);
+  vxm_free(context, pairing->partner);
+  vxm_free(context, pairing->face);
+  *pairing = (vxm_halfedge_pairing){0};
 }

@@ -32,7 +32,7 @@ typedef struct vxm_halfedge_pairing {
  *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_halfedge_pairing_build(vxm_halfedge_pairing *out, const vxm_soup *soup, vxm_error *error);
-void vxm_halfedge_pairing_destroy(vxm_halfedge_pairing *fans);
+void vxm_halfedge_pairing_destroy(vxm_halfedge_pairing *pairing);
 
 /**
  * Joins sides without a partner that run in opposite directions between bit-identical positions, unless a
@@ -41,34 +41,35 @@ void vxm_halfedge_pairing_destroy(vxm_halfedge_pairing *fans);
  * so.
  *
  * @param[out] stitched edges that were joined
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; then the fans are of no use
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; then the pairing is of no
+ * use
  */
-vxm_status vxm_halfedge_pairing_stitch(vxm_halfedge_pairing *fans, int64_t *stitched, vxm_error *error);
+vxm_status vxm_halfedge_pairing_stitch(vxm_halfedge_pairing *pairing, int64_t *stitched, vxm_error *error);
 
-static inline uint32_t vxm_halfedge_pairing_next(const vxm_halfedge_pairing *fans, uint32_t corner) {
-  const uint64_t *bounds = fans->soup->offsets + fans->face[corner];
+static inline uint32_t vxm_halfedge_pairing_next(const vxm_halfedge_pairing *pairing, uint32_t corner) {
+  const uint64_t *bounds = pairing->soup->offsets + pairing->face[corner];
   return corner + 1 < bounds[1] ? corner + 1 : (uint32_t)bounds[0];
 }
 
-static inline uint32_t vxm_halfedge_pairing_previous(const vxm_halfedge_pairing *fans, uint32_t corner) {
-  const uint64_t *bounds = fans->soup->offsets + fans->face[corner];
+static inline uint32_t vxm_halfedge_pairing_previous(const vxm_halfedge_pairing *pairing, uint32_t corner) {
+  const uint64_t *bounds = pairing->soup->offsets + pairing->face[corner];
   return (uint32_t)(corner > bounds[0] ? corner : bounds[1]) - 1;
 }
 
 /** The corner of the next face of the fan, across the side that starts here, or VXM_NO_SIDE. */
-static inline uint32_t vxm_halfedge_pairing_after(const vxm_halfedge_pairing *fans, uint32_t corner) {
-  uint32_t partner = fans->partner[corner];
-  return partner == VXM_NO_SIDE ? VXM_NO_SIDE : vxm_halfedge_pairing_next(fans, partner);
+static inline uint32_t vxm_halfedge_pairing_after(const vxm_halfedge_pairing *pairing, uint32_t corner) {
+  uint32_t partner = pairing->partner[corner];
+  return partner == VXM_NO_SIDE ? VXM_NO_SIDE : vxm_halfedge_pairing_next(pairing, partner);
 }
 
 /** The corner of the face before, across the side that ends here, or VXM_NO_SIDE. */
-static inline uint32_t vxm_halfedge_pairing_before(const vxm_halfedge_pairing *fans, uint32_t corner) {
-  return fans->partner[vxm_halfedge_pairing_previous(fans, corner)];
+static inline uint32_t vxm_halfedge_pairing_before(const vxm_halfedge_pairing *pairing, uint32_t corner) {
+  return pairing->partner[vxm_halfedge_pairing_previous(pairing, corner)];
 }
 
-static inline void vxm_halfedge_pairing_join(vxm_halfedge_pairing *fans, uint32_t p, uint32_t q) {
-  fans->partner[p] = q;
-  fans->partner[q] = p;
+static inline void vxm_halfedge_pairing_join(vxm_halfedge_pairing *pairing, uint32_t p, uint32_t q) {
+  pairing->partner[p] = q;
+  pairing->partner[q] = p;
 }
 
 #endif

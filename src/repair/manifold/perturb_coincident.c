@@ -8,7 +8,7 @@
  */
 #include "mesh/geometry.h"
 #include "repair/manifold/contact_direction.h"
-#include "repair/manifold/near_places.h"
+#include "repair/manifold/free_positions.h"
 #include "repair/state/repair_state.h"
 
 #include <float.h>
@@ -54,9 +54,9 @@ typedef struct moving {
   uint8_t *stays;       /**< of a solid: the first vertex of those that would merge: one of them stays */
   size_t shared;        /**< how many those are */
   double diagonal;
-  vxm_position_hash places; /**< what is taken */
-  vxm_position_hash floats; /**< what is taken once positions are 32-bit floats */
-  vxm_near_places near;
+  vxm_position_set taken;  /**< what is taken */
+  vxm_position_set floats; /**< what is taken once positions are 32-bit floats */
+  vxm_free_positions near;
 } moving;
 
 /* ---- What lies around a vertex ---- */
@@ -123,7 +123,7 @@ static void look_around(moving *m) {
   }
 }
 
-/* ---- A place for a vertex ---- */
+/* ---- A position for a vertex ---- */
 
 /** What tells positions apart. */
 typedef enum precision {
@@ -156,7 +156,7 @@ static vxm_vec3 direction_of(const surroundings *s) {
   return (vxm_vec3){s->toward.x + s->inward.x, s->toward.y + s->inward.y, s->toward.z + s->inward.z};
 }
 
-static vxm_near_moves moves_of(const moving *m, uint32_t v, const surroundings *s, precision to) {
+static vxm_position_move moves_of(const moving *m, uint32_t v, const surroundings *s, precision to) {
   const double *p = vxm_position(m->soup, v);
   vxm_vec3 direction = direction_of(s), none = {0, 0, 0};
   vxm_vec3 leaving = m->contact && vxm_vec3_length(s->away) == 0 ? m->contact[m->number[v]] : none;
@@ -164,10 +164,10 @@ static vxm_near_moves moves_of(const moving *m, uint32_t v, const surroundings *
     direction = leaving;
   double length = vxm_vec3_length(direction);
   double height = s->lowest > 0 ? fmin(s->lowest, s->shortest) : s->shortest;
-  vxm_near_moves by = {.floats = to != DOUBLES,
-                       .straight = vxm_vec3_length(leaving) > 0,
-                       .step = fmin(STEP * m->diagonal, STEP_HEIGHT * height),
-                       .coarse = COARSE * s->longest};
+  vxm_position_move by = {.floats = to != DOUBLES,
+                          .straight = vxm_vec3_length(leaving) > 0,
+                          .step = fmin(STEP * m->diagonal, STEP_HEIGHT * height),
+                          .coarse = COARSE * s->longest};
   if (to != DOUBLES)
     by.coarse = fmin(to == FLOATS ? fmin(by.coarse, ROOM * height) : by.coarse, STEP_FLOAT * m->diagonal);
   by.fine = fmin(by.coarse, vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID)
@@ -182,20 +182,20 @@ static vxm_near_moves moves_of(const moving *m, uint32_t v, const surroundings *
   return by;
 }
 
-/** Whether there is a place. */
+/** Whether there is a free position. */
 static bool move(moving *m, uint32_t v) {
   const surroundings *s = &m->around[m->number[v]];
   double to[3], *p = m->soup->positions + 3 * (size_t)v;
   static const precision first[] = {FLOATS, DOUBLES}, then[] = {FLOATS, NEXT_FLOAT};
   bool found = false;
   for (int i = m->state->options.single_precision || m->state->doubles_only; i < 2 && !found; i++) {
-    vxm_near_moves by = moves_of(m, v, s, m->floats_only ? then[i] : first[i]);
-    found = vxm_near_places_find(&m->near, v, &by, to);
+    vxm_position_move by = moves_of(m, v, s, m->floats_only ? then[i] : first[i]);
+    found = vxm_free_positions_find(&m->near, v, &by, to);
   }
   for (int a = 0; a < 3 && found; a++)
     p[a] = to[a];
-  vxm_position_hash_add(&m->places, v);
-  vxm_position_hash_add(&m->floats, v);
+  vxm_position_set_add(&m->taken, v);
+  vxm_position_set_add(&m->floats, v);
   return found;
 }
 
@@ -215,7 +215,7 @@ static vxm_status list_shared(moving *m, vxm_error *error) {
   return status;
 }
 
-/** Lets one vertex of each place stay that cannot be moved into the solid, as the others are: there is
+/** Lets one vertex of each position stay that cannot be moved into the solid, as the others are: there is
  * nowhere that it would be better off. */
 static void let_stay(moving *m) {
   for (size_t v = 0; v < m->soup->vertex_count; v++) {
@@ -233,8 +233,8 @@ static int64_t move_all(moving *m) {
   size_t vertices = m->soup->vertex_count;
   for (size_t v = 0; v < vertices; v++)
     if (m->state->used[v]) {
-      vxm_position_hash_add(&m->places, (uint32_t)v);
-      vxm_position_hash_add(&m->floats, (uint32_t)v);
+      vxm_position_set_add(&m->taken, (uint32_t)v);
+      vxm_position_set_add(&m->floats, (uint32_t)v);
     }
   look_around(m);
   if (m->contact)
@@ -267,15 +267,15 @@ static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
   if (status == VXM_OK)
     m->around = vxm_repair_state_scratch(state, m->shared, sizeof *m->around, &status, error);
   if (status == VXM_OK && m->shared > 0)
-    status = vxm_position_hash_open(&m->places, m->soup, vertices + m->shared, m->rule, error);
+    status = vxm_position_set_open(&m->taken, m->soup, vertices + m->shared, m->rule, error);
   if (status == VXM_OK && m->shared > 0)
-    status = vxm_position_hash_open(&m->floats, m->soup, vertices + m->shared, VXM_MERGE_FLOAT, error);
-  m->near = (vxm_near_places){.places = &m->places,
-                              .floats = &m->floats,
-                              .number = m->number,
-                              .single_precision = state->options.single_precision};
+    status = vxm_position_set_open(&m->floats, m->soup, vertices + m->shared, VXM_MERGE_FLOAT, error);
+  m->near = (vxm_free_positions){.taken = &m->taken,
+                                 .floats = &m->floats,
+                                 .number = m->number,
+                                 .single_precision = state->options.single_precision};
   if (status == VXM_OK && m->shared > 0)
-    m->near.full = vxm_repair_state_scratch(state, VXM_FULL_PLACES, sizeof *m->near.full, &status, error);
+    m->near.full = vxm_repair_state_scratch(state, VXM_FULL_POSITIONS, sizeof *m->near.full, &status, error);
   if (status == VXM_OK && m->shared > 0)
     status = look_for_contacts(m, error);
   if (status == VXM_OK && m->shared > 0)
@@ -285,8 +285,8 @@ static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
   vxm_free(state->context, m->stays);
   m->contact = NULL;
   m->stays = NULL;
-  vxm_position_hash_close(&m->floats);
-  vxm_position_hash_close(&m->places);
+  vxm_position_set_close(&m->floats);
+  vxm_position_set_close(&m->taken);
   vxm_free(state->context, m->around);
   vxm_free(state->context, m->number);
   return status;
@@ -317,7 +317,7 @@ static bool are_floats(const vxm_extent *extent) {
   return true;
 }
 
-/** What finds no place stays, for the verification to find. */
+/** What finds no free position stays, for the verification to find. */
 vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   if (!vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD))

@@ -22,7 +22,7 @@ typedef struct rim_fan {
 } rim_fan;
 
 typedef struct stitching {
-  vxm_halfedge_pairing *fans;
+  vxm_halfedge_pairing *pairing;
   vxm_error error;
   rim_side *rim;
   size_t rim_count;
@@ -36,15 +36,15 @@ typedef struct stitching {
 } stitching;
 
 static void *allocate(stitching *s, size_t count, size_t size) {
-  return vxm_alloc(s->fans->soup->context, count, size, &s->error);
+  return vxm_alloc(s->pairing->soup->context, count, size, &s->error);
 }
 
-static uint32_t end_fan(const vxm_halfedge_pairing *fans, uint32_t side) {
-  return fans->fan[vxm_halfedge_pairing_next(fans, side)];
+static uint32_t end_fan(const vxm_halfedge_pairing *pairing, uint32_t side) {
+  return pairing->fan[vxm_halfedge_pairing_next(pairing, side)];
 }
 
-static const double *position_of(const vxm_halfedge_pairing *fans, uint32_t corner) {
-  return vxm_position(fans->soup, fans->soup->indices[corner]);
+static const double *position_of(const vxm_halfedge_pairing *pairing, uint32_t corner) {
+  return vxm_position(pairing->soup, pairing->soup->indices[corner]);
 }
 
 /* ---- Places ---- */
@@ -58,11 +58,11 @@ static int by_position(const void *a, const void *b) {
 }
 
 static void note_fan(stitching *s, size_t *count, uint32_t corner) {
-  uint32_t fan = s->fans->fan[corner];
+  uint32_t fan = s->pairing->fan[corner];
   if (s->place[fan] == 0)
     return;
   s->place[fan] = 0;
-  const double *p = position_of(s->fans, corner);
+  const double *p = position_of(s->pairing, corner);
   /* of both zeros the positive one */
   s->rim_fans[(*count)++] = (rim_fan){{p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}, fan};
 }
@@ -71,10 +71,10 @@ static void note_fan(stitching *s, size_t *count, uint32_t corner) {
 static bool number_places(stitching *s) {
   size_t count = 0;
   uint32_t next = 0;
-  memset(s->place, 0xff, s->fans->fan_count * sizeof *s->place);
+  memset(s->place, 0xff, s->pairing->fan_count * sizeof *s->place);
   for (size_t i = 0; i < s->rim_count; i++) {
     note_fan(s, &count, s->rim[i].side);
-    note_fan(s, &count, vxm_halfedge_pairing_next(s->fans, s->rim[i].side));
+    note_fan(s, &count, vxm_halfedge_pairing_next(s->pairing, s->rim[i].side));
   }
   qsort(s->rim_fans, count, sizeof *s->rim_fans, by_position);
   for (size_t i = 0; i < count; i++) {
@@ -97,7 +97,7 @@ static int by_places(const void *a, const void *b) {
 static void sort_rim(stitching *s) {
   for (size_t i = 0; i < s->rim_count; i++) {
     rim_side *r = &s->rim[i];
-    uint32_t from = s->place[s->fans->fan[r->side]], to = s->place[end_fan(s->fans, r->side)];
+    uint32_t from = s->place[s->pairing->fan[r->side]], to = s->place[end_fan(s->pairing, r->side)];
     r->low = from < to ? from : to;
     r->high = from < to ? to : from;
   }
@@ -115,34 +115,34 @@ static uint32_t number_after(const merging *m, uint32_t fan) {
   return fan == m->gone[0] ? m->kept[0] : fan == m->gone[1] ? m->kept[1] : fan;
 }
 
-static bool face_has_fan(const vxm_halfedge_pairing *fans, uint32_t face, uint32_t fan) {
-  for (uint64_t c = fans->soup->offsets[face]; c < fans->soup->offsets[face + 1]; c++)
-    if (fans->fan[c] == fan)
+static bool face_has_fan(const vxm_halfedge_pairing *pairing, uint32_t face, uint32_t fan) {
+  for (uint64_t c = pairing->soup->offsets[face]; c < pairing->soup->offsets[face + 1]; c++)
+    if (pairing->fan[c] == fan)
       return true;
   return false;
 }
 
 /** Looks at the sides of a fan: false if it would meet a vertex twice in the same direction. */
 static bool note_sides(stitching *s, const merging *m, uint32_t fan) {
-  const vxm_halfedge_pairing *fans = s->fans;
-  uint32_t first = fans->start[fan], c = first;
+  const vxm_halfedge_pairing *pairing = s->pairing;
+  uint32_t first = pairing->start[fan], c = first;
   do {
-    uint32_t to = number_after(m, end_fan(fans, c));
-    uint32_t from = number_after(m, fans->fan[vxm_halfedge_pairing_previous(fans, c)]);
+    uint32_t to = number_after(m, end_fan(pairing, c));
+    uint32_t from = number_after(m, pairing->fan[vxm_halfedge_pairing_previous(pairing, c)]);
     if (s->left[to] == s->look || s->entered[from] == s->look)
       return false;
     s->left[to] = s->entered[from] = s->look;
-    c = vxm_halfedge_pairing_after(fans, c);
+    c = vxm_halfedge_pairing_after(pairing, c);
   } while (c != VXM_NO_SIDE && c != first);
   return true;
 }
 
-static bool share_face(const vxm_halfedge_pairing *fans, uint32_t p, uint32_t q) {
-  uint32_t first = fans->start[p], c = first;
+static bool share_face(const vxm_halfedge_pairing *pairing, uint32_t p, uint32_t q) {
+  uint32_t first = pairing->start[p], c = first;
   do {
-    if (face_has_fan(fans, fans->face[c], q))
+    if (face_has_fan(pairing, pairing->face[c], q))
       return true;
-    c = vxm_halfedge_pairing_after(fans, c);
+    c = vxm_halfedge_pairing_after(pairing, c);
   } while (c != VXM_NO_SIDE && c != first);
   return false;
 }
@@ -153,7 +153,7 @@ static bool may_merge(stitching *s, const merging *m) {
       continue;
     s->look++;
     if (!note_sides(s, m, m->kept[i]) || !note_sides(s, m, m->gone[i]) ||
-        share_face(s->fans, m->gone[i], m->kept[i]))
+        share_face(s->pairing, m->gone[i], m->kept[i]))
       return false;
   }
   return true;
@@ -161,42 +161,42 @@ static bool may_merge(stitching *s, const merging *m) {
 
 /* ---- Joining ---- */
 
-static void renumber(vxm_halfedge_pairing *fans, uint32_t fan, uint32_t number) {
-  uint32_t first = fans->start[fan], c = first;
+static void renumber(vxm_halfedge_pairing *pairing, uint32_t fan, uint32_t number) {
+  uint32_t first = pairing->start[fan], c = first;
   do {
-    fans->fan[c] = number;
-    c = vxm_halfedge_pairing_after(fans, c);
+    pairing->fan[c] = number;
+    c = vxm_halfedge_pairing_after(pairing, c);
   } while (c != VXM_NO_SIDE && c != first);
 }
 
 /** Where the two ends of an open fan meet the same vertex, they are one edge. */
 static void close_fan(stitching *s, uint32_t fan) {
-  vxm_halfedge_pairing *fans = s->fans;
-  uint32_t first = fans->start[fan], last = first, in = vxm_halfedge_pairing_previous(fans, first);
-  if (fans->partner[in] != VXM_NO_SIDE)
+  vxm_halfedge_pairing *pairing = s->pairing;
+  uint32_t first = pairing->start[fan], last = first, in = vxm_halfedge_pairing_previous(pairing, first);
+  if (pairing->partner[in] != VXM_NO_SIDE)
     return;
-  for (uint32_t c = vxm_halfedge_pairing_after(fans, first); c != VXM_NO_SIDE;
-       c = vxm_halfedge_pairing_after(fans, c))
+  for (uint32_t c = vxm_halfedge_pairing_after(pairing, first); c != VXM_NO_SIDE;
+       c = vxm_halfedge_pairing_after(pairing, c))
     last = c;
-  if (end_fan(fans, last) != fans->fan[in])
+  if (end_fan(pairing, last) != pairing->fan[in])
     return;
-  vxm_halfedge_pairing_join(fans, last, in);
+  vxm_halfedge_pairing_join(pairing, last, in);
   s->stitched++;
 }
 
 static bool try_join(stitching *s, uint32_t p, uint32_t q) {
-  vxm_halfedge_pairing *fans = s->fans;
-  if (fans->partner[p] != VXM_NO_SIDE || fans->partner[q] != VXM_NO_SIDE)
+  vxm_halfedge_pairing *pairing = s->pairing;
+  if (pairing->partner[p] != VXM_NO_SIDE || pairing->partner[q] != VXM_NO_SIDE)
     return false;
   /* going around the start of a side it is the last one, around its end the first */
-  merging m = {{fans->fan[p], fans->fan[q]}, {end_fan(fans, q), end_fan(fans, p)}};
+  merging m = {{pairing->fan[p], pairing->fan[q]}, {end_fan(pairing, q), end_fan(pairing, p)}};
   s->tries++;
   if (!may_merge(s, &m))
     return false;
   for (int i = 0; i < 2; i++)
     if (m.kept[i] != m.gone[i])
-      renumber(fans, m.gone[i], m.kept[i]);
-  vxm_halfedge_pairing_join(fans, p, q);
+      renumber(pairing, m.gone[i], m.kept[i]);
+  vxm_halfedge_pairing_join(pairing, p, q);
   s->stitched++;
   close_fan(s, m.kept[0]);
   close_fan(s, m.kept[1]);
@@ -213,9 +213,9 @@ static void join_along(stitching *s, size_t count) {
   for (size_t i = 0; i < count; i++)
     for (size_t j = 1, tries = 0; j < count && tries < TRIES_PER_SIDE; j++) {
       const vxm_radial_side *w = &s->around[i], *other = &s->around[(i + j) % count];
-      if (!w->forward || s->fans->partner[w->side] != VXM_NO_SIDE)
+      if (!w->forward || s->pairing->partner[w->side] != VXM_NO_SIDE)
         break;
-      if (other->forward || s->fans->partner[other->side] != VXM_NO_SIDE)
+      if (other->forward || s->pairing->partner[other->side] != VXM_NO_SIDE)
         continue;
       tries++;
       try_join(s, w->side, other->side);
@@ -223,20 +223,20 @@ static void join_along(stitching *s, size_t count) {
 }
 
 static void stitch_edge(stitching *s, size_t begin, size_t end) {
-  vxm_halfedge_pairing *fans = s->fans;
+  vxm_halfedge_pairing *pairing = s->pairing;
   size_t forward = 0, count = end - begin;
   for (size_t i = 0; i < count; i++) {
     uint32_t side = s->rim[begin + i].side;
-    bool is_forward = s->place[fans->fan[side]] == s->rim[begin].low;
+    bool is_forward = s->place[pairing->fan[side]] == s->rim[begin].low;
     forward += is_forward;
-    s->around[i] = (vxm_radial_side){.side = side, .face = fans->face[side], .forward = is_forward};
+    s->around[i] = (vxm_radial_side){.side = side, .face = pairing->face[side], .forward = is_forward};
   }
   if (forward == 0 || forward == count || s->rim[begin].low == s->rim[begin].high)
     return;
-  const double *p = position_of(fans, s->rim[begin].side);
-  const double *q = position_of(fans, vxm_halfedge_pairing_next(fans, s->rim[begin].side));
-  bool upward = s->place[fans->fan[s->rim[begin].side]] == s->rim[begin].low;
-  vxm_radial_sort_match(s->around, count, fans->soup, upward ? p : q, upward ? q : p, fans->scale);
+  const double *p = position_of(pairing, s->rim[begin].side);
+  const double *q = position_of(pairing, vxm_halfedge_pairing_next(pairing, s->rim[begin].side));
+  bool upward = s->place[pairing->fan[s->rim[begin].side]] == s->rim[begin].low;
+  vxm_radial_sort_match(s->around, count, pairing->soup, upward ? p : q, upward ? q : p, pairing->scale);
   join_along(s, count);
 }
 
@@ -250,8 +250,8 @@ static bool stitch_all(stitching *s) {
     if (s->tries < next_look)
       continue;
     next_look = s->tries + LOOK_EVERY;
-    if (vxm_progress(s->fans->soup->context, "stitching", (double)begin / (double)s->rim_count, &s->error) !=
-        VXM_OK)
+    if (vxm_progress(s->pairing->soup->context, "stitching", (double)begin / (double)s->rim_count,
+                     &s->error) != VXM_OK)
       return false;
   }
   return true;
@@ -260,13 +260,13 @@ static bool stitch_all(stitching *s) {
 /* ---- All of it ---- */
 
 static bool list_rim(stitching *s) {
-  const vxm_halfedge_pairing *fans = s->fans;
+  const vxm_halfedge_pairing *pairing = s->pairing;
   size_t count = 0;
-  for (uint32_t c = 0; c < fans->soup->corner_count; c++)
-    count += fans->partner[c] == VXM_NO_SIDE;
+  for (uint32_t c = 0; c < pairing->soup->corner_count; c++)
+    count += pairing->partner[c] == VXM_NO_SIDE;
   s->rim = allocate(s, count, sizeof *s->rim);
-  for (uint32_t c = 0; s->rim && c < fans->soup->corner_count; c++)
-    if (fans->partner[c] == VXM_NO_SIDE)
+  for (uint32_t c = 0; s->rim && c < pairing->soup->corner_count; c++)
+    if (pairing->partner[c] == VXM_NO_SIDE)
       s->rim[s->rim_count++].side = c;
   return s->rim != NULL;
 }
@@ -276,7 +276,7 @@ static bool stitch(stitching *s) {
     return false;
   if (s->rim_count < 2)
     return true;
-  s->place = allocate(s, s->fans->fan_count, sizeof *s->place);
+  s->place = allocate(s, s->pairing->fan_count, sizeof *s->place);
   s->rim_fans = allocate(s, 2 * s->rim_count, sizeof *s->rim_fans);
   if (!s->place || !s->rim_fans)
     return false;
@@ -284,16 +284,18 @@ static bool stitch(stitching *s) {
     return true;
   sort_rim(s);
   s->around = allocate(s, s->rim_count, sizeof *s->around);
-  s->left =
-      s->around ? vxm_calloc(s->fans->soup->context, s->fans->fan_count, sizeof *s->left, &s->error) : NULL;
+  s->left = s->around
+                ? vxm_calloc(s->pairing->soup->context, s->pairing->fan_count, sizeof *s->left, &s->error)
+                : NULL;
   s->entered =
-      s->left ? vxm_calloc(s->fans->soup->context, s->fans->fan_count, sizeof *s->entered, &s->error) : NULL;
+      s->left ? vxm_calloc(s->pairing->soup->context, s->pairing->fan_count, sizeof *s->entered, &s->error)
+              : NULL;
   return s->entered && stitch_all(s);
 }
 
-vxm_status vxm_halfedge_pairing_stitch(vxm_halfedge_pairing *fans, int64_t *stitched, vxm_error *error) {
-  stitching s = {.fans = fans, .error = VXM_ERROR_INIT};
-  vxm_context *context = fans->soup->context;
+vxm_status vxm_halfedge_pairing_stitch(vxm_halfedge_pairing *pairing, int64_t *stitched, vxm_error *error) {
+  stitching s = {.pairing = pairing, .error = VXM_ERROR_INIT};
+  vxm_context *context = pairing->soup->context;
   bool done = stitch(&s);
   vxm_free(context, s.entered);
   vxm_free(context, s.left);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/components.h"
 #include "repair/sheets/thicken.h"
-#include "repair/state/faces_taken.h"
+#include "repair/state/face_subset.h"
 #include "repair/state/repair_state.h"
 
 #include <math.h>
@@ -67,7 +67,7 @@ static void note_dropped(vxm_repair_state *state, const uint8_t *sheets) {
 static vxm_status replace(vxm_repair_state *state, const uint8_t *sheets, vxm_error *error) {
   vxm_soup *rest;
   uint64_t *origin;
-  vxm_status status = vxm_faces_taken(&rest, &origin, state->soup, sheets, 0, error);
+  vxm_status status = vxm_face_subset_create(&rest, &origin, state->soup, sheets, 0, error);
   if (status != VXM_OK)
     return status;
   size_t kept = rest->face_count;

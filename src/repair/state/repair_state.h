@@ -7,7 +7,7 @@
 #include "mesh/surface_sums.h"
 #include "mesh/unit_scale.h"
 #include "repair/state/lost_parts.h"
-#include "repair/state/merge_places.h"
+#include "repair/state/merge_rule.h"
 #include "repair/state/provenance.h"
 
 typedef enum vxm_pass {

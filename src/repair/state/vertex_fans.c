@@ -80,11 +80,11 @@ typedef struct place {
 
 /** The corner at the same vertex of the face across the side that begins at a corner: where the side that
  * runs back ends. */
-static inline place step(const vxm_soup *soup, const uint32_t *across, place at) {
+static inline place step(const vxm_soup *soup, const uint32_t *adjacent, place at) {
   const uint32_t *index = soup->indices;
   uint64_t after = at.corner + 1 < soup->offsets[at.face + 1] ? at.corner + 1 : soup->offsets[at.face];
   uint32_t here = index[at.corner], there = index[after];
-  place next = {.face = across[at.corner]};
+  place next = {.face = adjacent[at.corner]};
   uint64_t begin = soup->offsets[next.face], end = soup->offsets[next.face + 1], last = end - 1;
   next.corner = begin;
   for (uint64_t c = begin; c < end; last = c++) /* to the end: nobody can tell which it is */
@@ -93,10 +93,10 @@ static inline place step(const vxm_soup *soup, const uint32_t *across, place at)
 }
 
 /** Whether a walk about a vertex comes back after so many corners, and not before. */
-static bool goes_round(const vxm_soup *soup, const uint32_t *across, place first, uint32_t corners) {
+static bool goes_round(const vxm_soup *soup, const uint32_t *adjacent, place first, uint32_t corners) {
   place at = first;
   for (uint32_t count = 1; count <= corners; count++) {
-    at = step(soup, across, at);
+    at = step(soup, adjacent, at);
     if (at.corner == first.corner)
       return count == corners;
   }
@@ -104,7 +104,7 @@ static bool goes_round(const vxm_soup *soup, const uint32_t *across, place first
 }
 
 /** Whether a walk about each vertex from its first corner meets all its corners, in a closed soup. */
-static vxm_status are_whole(bool *out, const vxm_soup *soup, const uint32_t *across, vxm_error *error) {
+static vxm_status are_whole(bool *out, const vxm_soup *soup, const uint32_t *adjacent, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = VXM_OK;
   uint32_t *corners = vxm_calloc(soup->context, soup->vertex_count, sizeof *corners, &local);
@@ -114,7 +114,7 @@ static vxm_status are_whole(bool *out, const vxm_soup *soup, const uint32_t *acr
   for (size_t f = 0; *out && f < soup->face_count && status == VXM_OK; f++) {
     for (uint64_t c = soup->offsets[f]; *out && c < soup->offsets[f + 1]; c++) {
       uint32_t *left = &corners[soup->indices[c]];
-      *out = *left == 0 || goes_round(soup, across, (place){c, f}, *left);
+      *out = *left == 0 || goes_round(soup, adjacent, (place){c, f}, *left);
       *left = 0; /* it was looked at */
     }
     status = vxm_ask_at(f, soup->context, &local);
@@ -147,8 +147,8 @@ vxm_status vxm_is_manifold(bool *out, vxm_repair_state *state, vxm_error *error)
   if (status != VXM_OK || state->edges.crowded > 0 || state->edges.against > 0)
     return status;
   /* where each corner has a side, as there is none from a vertex to itself */
-  if (state->edges.across && 2 * state->edges.count == state->soup->corner_count && are_small(state->soup))
-    status = are_whole(out, state->soup, state->edges.across, error);
+  if (state->edges.adjacent && 2 * state->edges.count == state->soup->corner_count && are_small(state->soup))
+    status = are_whole(out, state->soup, state->edges.adjacent, error);
   else {
     uint8_t *fans;
     status = vxm_vertex_fans_count(&fans, state, error);

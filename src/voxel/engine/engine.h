@@ -73,14 +73,14 @@ typedef struct vxm_engine_ops {
   vxm_status (*count)(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
                       vxm_error *error);
   /** Makes room for voxels that stay; see device_voxels.h. NULL: the engine keeps none. */
-  vxm_status (*keep)(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
-                     vxm_error *error);
+  vxm_status (*device_voxels)(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
+                              vxm_error *error);
   /** Before a window is made that stays, and is all of a grid: from now on `unite`, `vote` and `surface`
    * leave it on the device, and look at no words. */
-  vxm_status (*keep_begin)(vxm_engine *engine, const vxm_window *window, vxm_error *error);
+  vxm_status (*device_voxels_begin)(vxm_engine *engine, const vxm_window *window, vxm_error *error);
   /** Takes the window, or where its words are not NULL these, into variant `index` of the voxels. */
-  vxm_status (*keep_end)(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
-                         const vxm_window *window, vxm_error *error);
+  vxm_status (*device_voxels_end)(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
+                                  const vxm_window *window, vxm_error *error);
   void (*destroy)(vxm_engine *engine);
 } vxm_engine_ops;
 

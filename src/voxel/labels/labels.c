@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels/labels.h"
 #include "base/threads.h"
-#include "grid/sum.h"
+#include "grid/count_hash.h"
 #include "voxel/fields/field.h"
 #include "voxel/labels/label_overlaps.h"
 #include "voxel/model/model_report.h"
@@ -29,7 +29,7 @@ static size_t grid_words(const labels *l) {
 
 /* ---- The voxels of the model ---- */
 
-static vxm_status fill_set(labels *l, const vxm_field_plan *plan, vxm_sum *sum, vxm_error *error) {
+static vxm_status fill_set(labels *l, const vxm_field_plan *plan, vxm_count_hash *sum, vxm_error *error) {
   const vxm_space *space = &l->claims.lattice.space;
   const vxm_window *set = &l->claims.set;
   vxm_status status = vxm_model_begin(&l->pass, l->model, space, NULL, NULL, error);
@@ -40,9 +40,9 @@ static vxm_status fill_set(labels *l, const vxm_field_plan *plan, vxm_sum *sum, 
     part.words = set->words + (size_t)begin * set->slice_words;
     status = vxm_model_pass_fill(l->pass, &part, error);
   }
-  *sum = vxm_sum_start(space);
+  *sum = vxm_count_hash_start(space);
   if (status == VXM_OK)
-    vxm_sum_add(sum, l->context, set, NULL);
+    vxm_count_hash_add(sum, l->context, set, NULL);
   return status;
 }
 
@@ -168,7 +168,7 @@ void vxm_labels_warn(const vxm_face_labels *labelling, int64_t voxels, vxm_warni
              table->count, first, vxm_label_table_name(table, first));
 }
 
-static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
+static void sum_up(labels *l, vxm_label_report *report, const vxm_count_hash *sum) {
   vxm_label_table *table = &l->labelling->table;
   vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), count_tile, l);
   for (size_t label = 0; label < table->count; label++)
@@ -201,7 +201,7 @@ static vxm_status plan_slices(vxm_field_plan *plan, const labels *l, vxm_error *
 
 static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
   vxm_field_plan plan;
-  vxm_sum sum;
+  vxm_count_hash sum;
   vxm_status status = vxm_label_overlaps_begin(&l->claims, error);
   if (status == VXM_OK)
     status = plan_slices(&plan, l, error);

@@ -97,8 +97,8 @@ static vxm_status note_filled(const vxm_sparse *filled, vxm_model_pass *pass, co
   vxm_status status = unite_parts(&hollow, pass, job, NULL, error);
   if (status != VXM_OK)
     return status;
-  vxm_octree_sum(filled, &voxels, &hash);
-  vxm_octree_sum(hollow, &of_parity, &hash);
+  vxm_octree_count_hash(filled, &voxels, &hash);
+  vxm_octree_count_hash(hollow, &of_parity, &hash);
   vxm_sparse_destroy(hollow);
   if (voxels > of_parity)
     vxm_self_overlap_note(&pass->solid);
@@ -292,7 +292,7 @@ vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_mo
   if (status == VXM_OK && report) {
     int64_t voxels;
     uint64_t hash;
-    vxm_octree_sum(*out, &voxels, &hash);
+    vxm_octree_count_hash(*out, &voxels, &hash);
     vxm_model_report(pass, report, voxels, hash);
   }
   vxm_model_close(model, pass);

@@ -192,7 +192,7 @@ static void put_gap(sparse_state *state, scratch *d, size_t worker, size_t begin
   }
 }
 
-/** Flips voxels of a strip, and warnings the nodes that have flips. */
+/** Flips voxels of a strip, and notes which nodes have flips. */
 static void flip_voxels(const strip_place *restrict places, uint64_t *restrict flipped,
                         uint8_t *restrict has_flips, const vxm_strip_flip *restrict flips, size_t count) {
   for (size_t i = 0; i < count; i++) {
