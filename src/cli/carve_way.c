@@ -126,6 +126,8 @@ int cli_way_next(cli_run *cli, cli_way *way, double pose[12], bool *is_lifted, b
     way->line++;
     if (!strchr(text, '\n') && !feof(way->file))
       return cli_fail_text(cli, "%s:%" PRId64 ": longer than %d bytes", way->name, way->line, LINE_SIZE - 2);
+    if (way->line == 1 && strncmp(text, "\xef\xbb\xbf", 3) == 0) /* which spreadsheets put before UTF-8 */
+      memmove(text, text + 3, strlen(text + 3) + 1);
     squeeze(text);
     *is_lifted |= !*text;
     if (!*text || *text == '#')
