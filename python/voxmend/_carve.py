@@ -34,6 +34,9 @@ def _poses(path: ArrayLike) -> Floats:
     """(n, 3, 4) matrices of positions, positions with quaternions, or matrices."""
     given = _values.reals("carve: path", path)
     if given.ndim == 3 and given.shape[1:] in ((3, 4), (4, 4)):
+        if (abs(given[:, 3:] - (0, 0, 0, 1)) > 1e-9).any():
+            raise ArgumentError("carve: the last row of a matrix (4, 4) is not 0, 0, 0, 1: x, y, z stand in its last column; "
+                                "transpose matrices that have them in the last row")
         return numpy.ascontiguousarray(given[:, :3])
     if given.ndim != 2 or given.shape[1] not in (3, 7, 12):
         raise ArgumentError("carve: a path has shape (n, 3), (n, 7), (n, 12), (n, 3, 4) or (n, 4, 4), not %s" % (given.shape,))

@@ -9,7 +9,7 @@ import numpy
 from ._errors import ArgumentError, KindError
 from ._grid import VoxelGrid
 from ._mesh_convert import package
-from ._space import Placed
+from ._space import Placed, place_of_trimesh
 from ._types import Array
 
 
@@ -20,12 +20,8 @@ def to_trimesh(grid: VoxelGrid) -> Any:
 def from_trimesh(source: Any) -> VoxelGrid:
     if not all(hasattr(source, name) for name in ("matrix", "transform")):
         raise KindError("from_trimesh: %s has no matrix and transform" % type(source).__name__)
-    transform = numpy.asarray(source.transform, numpy.float64)
-    sizes = numpy.diag(transform)[:3]
-    if transform.shape != (4, 4) or (transform[:3, :3] != numpy.diag(sizes)).any() or not (sizes > 0).all():
-        raise ArgumentError("from_trimesh: the grid is turned, mirrored or sheared, which a VoxelGrid cannot be; use its "
-                            ".revoxelized(shape) or its mesh")
-    return VoxelGrid(source.matrix, sizes, transform[:3, 3] - sizes / 2)
+    origin, sizes = place_of_trimesh("from_trimesh", source)
+    return VoxelGrid(source.matrix, sizes, origin)
 
 
 def image_data(placed: Placed, name: str, values: Array) -> Any:

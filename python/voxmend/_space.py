@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, List, Optional, Protocol, Tuple
+from typing import Any, List, Optional, Protocol, Tuple, Union
 
 import numpy
 
@@ -11,10 +11,10 @@ from . import _core, _values
 from ._core import ffi, lib
 from ._errors import ArgumentError, EmptyError, KindError, RangeError
 from ._mesh import Mesh
-from ._types import ArrayLike, Floats, Int64s, Resolution, Shape, Size
+from ._types import Array, ArrayLike, Floats, Int64s, Resolution, Shape, Size
 
 
-class Like(Protocol):
+class HasPlace(Protocol):
     """What says where its voxels lie: grids, octrees and fields, and anything else that has these."""
 
     @property
@@ -27,6 +27,22 @@ class Like(Protocol):
     def pitch(self) -> Any: ...
 
 
+class HasTransform(Protocol):
+    """A grid of trimesh: its transform takes indices to the centres of voxels."""
+
+    @property
+    def shape(self) -> Any: ...
+
+    @property
+    def encoding(self) -> Any: ...
+
+    @property
+    def transform(self) -> Any: ...
+
+
+Like = Union[HasPlace, HasTransform]
+
+
 def space(dims: Any, origin: Any, size: Any) -> Any:
     """A vxm_space."""
     out = ffi.new("vxm_space *")
@@ -34,6 +50,15 @@ def space(dims: Any, origin: Any, size: Any) -> Any:
     out.origin[0:3] = _values.reals("grid: origin", origin, (3,)).tolist()
     out.voxel_size[0:3] = _values.reals("grid: pitch", size, (3,)).tolist()
     return out
+
+
+def _in_threes(name: str, values: Array) -> Array:
+    """As they are, if each row is x, y and z: numpy would take (n, 1) for three equal numbers. An empty list is no rows."""
+    if values.shape == (0,):
+        return values.reshape(0, 3)
+    if values.ndim < 1 or values.shape[-1] != 3:
+        raise ArgumentError("%s of shape %s are not (n, 3)" % (name, values.shape))
+    return values
 
 
 class Placed:
@@ -73,11 +98,13 @@ class Placed:
 
     def indices_to_points(self, indices: ArrayLike) -> Floats:
         """Centres of voxels, (n, 3) in model units, of their (n, 3) indices."""
-        return numpy.asarray(self.origin + (_values.array("grid: indices", indices, "iuf", "numbers") + 0.5) * self.pitch)
+        at = _in_threes("grid: indices", _values.array("grid: indices", indices, "iuf", "numbers"))
+        return numpy.asarray(self.origin + (at + 0.5) * self.pitch)
 
     def points_to_indices(self, points: ArrayLike) -> Int64s:
         """(n, 3) indices of the voxels in which points lie; they may lie outside of the box."""
-        at = numpy.floor((_values.reals("grid: points", points) - self.origin) / self.pitch)
+        given = _in_threes("grid: points", _values.reals("grid: points", points))
+        at = numpy.floor((given - self.origin) / self.pitch)
         return numpy.asarray(numpy.clip(at, -(2.0 ** 62), 2.0 ** 62), numpy.int64)
 
     def _has_space_of(self, other: "Placed") -> bool:
@@ -106,6 +133,21 @@ def shown(numbers: Floats) -> str:
 def shown_size(sizes: Floats) -> str:
     """One number if all are equal."""
     return "%.6g" % sizes[0] if (sizes == sizes[0]).all() else shown(sizes)
+
+
+def is_of_trimesh(source: Any) -> bool:
+    """By what a grid of trimesh has, of which some versions call a centre `origin`."""
+    return not isinstance(source, Placed) and all(hasattr(source, name) for name in ("shape", "encoding", "transform"))
+
+
+def place_of_trimesh(caller: str, source: Any) -> Tuple[Floats, Floats]:
+    """Origin and sides of voxels of a grid of trimesh."""
+    transform = numpy.asarray(source.transform, numpy.float64)
+    sizes = numpy.diag(transform)[:3]
+    if transform.shape != (4, 4) or (transform[:3, :3] != numpy.diag(sizes)).any() or not (sizes > 0).all():
+        raise ArgumentError("%s: the grid is turned, mirrored or sheared, which a VoxelGrid cannot be; use its "
+                            ".revoxelized(shape) or its mesh" % caller)
+    return transform[:3, 3] - sizes / 2, sizes
 
 
 def _sizes(caller: str, name: str, wanted: Size) -> List[float]:
@@ -175,9 +217,9 @@ class Place:
         if given or self.bounds is not None or self.fit is not None or self.pad:
             raise ArgumentError("%s: `like` takes the whole space of a grid; leave out the others" % self.caller)
         missing = [name for name in ("shape", "origin", "pitch") if not hasattr(self.like, name)]
-        if missing:
+        if missing and not is_of_trimesh(self.like):
             raise KindError("%s: `like` is %s, which has no %s; give a grid, a field or an octree, such as "
-                            "voxmend.VoxelGrid(array, pitch, origin)" %
+                            "voxmend.VoxelGrid(array, pitch, least_corner)" %
                             (self.caller, type(self.like).__name__, " and no ".join(missing)))
 
     def options(self, original: Mesh) -> Tuple[Any, Any]:
@@ -187,7 +229,9 @@ class Place:
                             fit=_core.choice(self.caller + ": fit", fit, "VXM_FIT_"))
         kept = None
         if self.like is not None:
-            kept = space(self.like.shape, self.like.origin, self.like.pitch)
+            like: Any = self.like
+            origin, sides = place_of_trimesh(self.caller, like) if is_of_trimesh(like) else (like.origin, like.pitch)
+            kept = space(like.shape, origin, sides)
         if self.resolution is not None:
             options.resolution[0:3] = _resolution(self.caller, self.resolution)
         if self.voxel_size is not None:
@@ -198,11 +242,12 @@ class Place:
             if self.fit is None and self.bounds is None:
                 kept = _lattice(original, sizes, options.pad)
         if self.bounds is not None:
-            corners = _values.reals(self.caller + ": bounds", self.bounds).reshape(-1)
-            if corners.size != 6:
-                raise ArgumentError("%s: bounds are not two corners of three numbers" % self.caller)
+            corners = _values.reals(self.caller + ": bounds", self.bounds)
+            if corners.shape not in ((2, 3), (6,)):  # (3, 2), a range along each axis, would be taken for other corners
+                raise ArgumentError("%s: bounds of shape %s are not two corners of three numbers, the least and the greatest: "
+                                    "[[x0, y0, z0], [x1, y1, z1]]" % (self.caller, corners.shape))
             options.use_bounds = True
-            options.bounds[0:6] = corners.tolist()
+            options.bounds[0:6] = corners.reshape(-1).tolist()
         if kept is not None:
             options.like = kept
         return options, kept

@@ -35,7 +35,7 @@ def voxelize(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: 
             box of the model; "sphere": equal dimensions, filled by the diagonal of the box.
         pad: voxels kept free on each side: within a resolution, in addition with a size.
         bounds: (2, 3) corners of the box to cover, model units.
-        like: a grid, octree or field whose space is taken.
+        like: a grid, octree or field whose space is taken; or a VoxelGrid of trimesh.
         mode: "solid", "surface" or "both".
         surface: with mode "surface", "conservative", which is what is taken if nothing is said, "thin", "shell26", "shell18" or
             "shell6"; with "both" one of the first two.

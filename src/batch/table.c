@@ -32,6 +32,11 @@ static void free_cells(table *t) {
 
 /* ---- Rows ---- */
 
+/** Whether all of the file that has been read is the mark that Windows and spreadsheets put before UTF-8. */
+static bool is_mark(const table *t, const char *buffer, size_t length) {
+  return t->line == 1 && t->cell_count == 0 && length == 3 && memcmp(buffer, "\xef\xbb\xbf", 3) == 0;
+}
+
 /**
  * Reads a cell into a buffer. Returns what ended it: the separator, '\n' or EOF; -2 if it is too long or a
  * quote is not closed.
@@ -62,6 +67,8 @@ static int read_cell(table *t, char *buffer, size_t *length) {
     if (*length + 1 >= CELL_BYTES || c == '\0')
       return -2;
     buffer[(*length)++] = (char)c;
+    if (!was_quoted && is_mark(t, buffer, *length))
+      *length = 0;
   }
 }
 
@@ -137,9 +144,6 @@ static bool read_columns(table *t, batch_error *error) {
   int got = read_row(t, error);
   if (got <= 0)
     return got == 0 ? batch_fail(error, "%s: the table is empty", t->name) : false;
-  char *first = t->cells[0];
-  if (strncmp(first, "\xef\xbb\xbf", 3) == 0)
-    memmove(first, first + 3, strlen(first + 3) + 1);
   for (int c = 0; c < t->cell_count; c++)
     for (int k = 0; k < KNOWN; k++)
       if (strcasecmp(t->cells[c], names[k]) == 0)

@@ -129,6 +129,9 @@ int cli_toolpath_next(cli_run *cli, cli_toolpath *toolpath, double pose[12], boo
     if (!strchr(text, '\n') && !feof(toolpath->file))
       return cli_fail_text(cli, "%s:%" PRId64 ": longer than %d bytes", toolpath->name, toolpath->line,
                            LINE_SIZE - 2);
+    if (toolpath->line == 1 &&
+        strncmp(text, "\xef\xbb\xbf", 3) == 0) /* which spreadsheets put before UTF-8 */
+      memmove(text, text + 3, strlen(text + 3) + 1);
     squeeze(text);
     *is_lifted |= !*text;
     if (!*text || *text == '#')

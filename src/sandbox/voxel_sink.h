@@ -43,8 +43,8 @@ typedef struct vxm_sink_array {
   uint32_t is_color; /**< 0 or 1 */
   int64_t shape[3];  /**< the last is the fastest */
   double place[6];   /**< origin, and size of voxels */
-  uint32_t has_place;
-  uint32_t fits; /**< arrays of the file that could have been read */
+  uint32_t placed;   /**< 1 if the origin is there, plus 2 if the size is */
+  uint32_t fits;     /**< arrays of the file that could have been read */
 } vxm_sink_array;
 
 typedef struct vxm_voxel_sink {

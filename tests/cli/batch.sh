@@ -95,6 +95,8 @@ run 'cd table && find . -type f -name "*.npy*" | sort && cd ..'
 run 'cut -f 1-4 table/failures.tsv'
 run 'ls data/a/*.off | sed 1d >list.txt; voxmend batch list.txt -o listed -r 8 --shard 1/2 && find listed -name "*.binvox"'
 run 'voxmend batch list.txt -o listed -r 8 --shard 0/2 --pictures 0 && find listed -name "*.binvox" | sort'
+run '{ printf "\357\273\277"; head -1 list.txt; } >marked.txt; voxmend batch marked.txt -o marked -r 8 --pictures 0 && find marked -name "*.binvox"'
+run 'printf "\357\273\277\"path\",\"id\"\r\n\"in/cube.off\",\"box\"\r\n" >marked.csv; voxmend batch marked.csv -o tabled -r 8 --pictures 0 && find tabled -name "*.binvox"'
 # Of files with the same bytes those for training are the duplicates, whatever their names; a picture is drawn of the other.
 mkdir -p splits/chair/train splits/chair/test splits/chair/val splits/chair/extra
 for name in train/a test/b; do cp in/cube.off splits/chair/$name.off; done

@@ -46,6 +46,7 @@ cat >matrices.csv <<'END'
 END
 run 'voxmend carve stock.npy -t tool.off -p path.csv -o rest.npy | timeless'
 run 'voxmend carve stock.npy -t tool.off -p turns.csv -o turned.npy | timeless'
+run '{ printf "\357\273\277"; cat turns.csv; } >marked.csv; voxmend carve stock.npy -t tool.off -p marked.csv -o x.npy -q && cmp x.npy turned.npy && echo equal'
 run 'voxmend carve stock.npy -t tool.off -p matrices.csv -o x.npy -q && cmp x.npy turned.npy && echo equal'
 run 'voxmend carve stock.npy -t tool.off -p - -o x.npy -q <path.csv && cmp x.npy rest.npy && echo equal'
 run 'voxmend convert rest.npy -o rest.nrrd -q && voxmend carve - -t tool.off -p path.csv -o - --format nrrd -q <stock.nrrd | cmp - rest.nrrd && echo equal'

@@ -113,6 +113,24 @@ def strangers():
             told = json.load(file)
         assert told["origin"] == [1, 2, 3.5] and told["voxel_size"] == [0.5] * 3, told
         assert [label["name"] for label in told["labels"]] == ["ä", "b"], told
+    # Axes as others write them; what they are not is told. A place in parts.
+    for said, order in (("ZYX", (2, 1, 0)), ("z, y, x", (2, 1, 0)), (["z", "x", "y"], (1, 2, 0)), (numpy.array([b"Y", b"X", b"Z"]), (1, 0, 2)),
+                        ("depth", None), ("z,y,y", None), (7, None), (["x"] * 50, None)):
+        with h5py.File(path, "w") as file:
+            file["voxels"] = values
+            file["voxels"].attrs.update({"axes": said, "origin": [1, 2, 3.5], "voxel_size": 0.5})
+        back, said_then = convert("other.h5")
+        assert (back == values.transpose(order or (0, 1, 2))).all(), said
+        assert ("\"axes\" is not" in said_then) == (order is None) and "no attribute" not in said_then, (said, said_then)
+    for attributes, place, lacks in (({"voxel_size": [1, 2, 3]}, [[0, 0, 0], [1, 2, 3]], "\"origin\""),
+                                     ({"origin": [1, 2, 3], "voxel_size": [1, 2]}, [[1, 2, 3], [1] * 3], "\"voxel_size\"")):
+        with h5py.File(path, "w") as file:
+            file["voxels"] = values
+            file["voxels"].attrs.update(attributes)
+        assert "no attribute " + lacks in convert("other.h5")[1]
+        with open(os.path.join(FOLDER, "back.npy.json")) as file:
+            told = json.load(file)
+        assert [told["origin"], told["voxel_size"]] == place, told
     # Colours without opacity, and values that were never written.
     for channels in (3, 4):
         colors = chance.integers(0, 256, (5, 6, 7, channels)).astype("u1")

@@ -180,6 +180,15 @@ static void test_binvox_tolerance(void **state) {
   assert_true(grid->space.voxel_size[0] == 2 && grid->space.origin[2] == 3);
   assert_int_equal(vxm_grid_warning_count(grid), 1);
   vxm_grid_destroy(grid);
+
+  /* As trimesh writes them; its places are told of, and not taken, since it hands on those of binvox too. */
+  grid = read_text(
+      context, folder, "d.binvox",
+      TEXT("#binvox 1\n# generated in `trimesh`\ndim 2 2 2\ntranslate 1 2 3\nscale 6\ndata\n\1\10"));
+  assert_true(grid->space.voxel_size[0] == 3 && grid->space.origin[2] == 3);
+  assert_int_equal(vxm_grid_warning_count(grid), 1);
+  assert_non_null(strstr(vxm_grid_warning(grid, 0), "trimesh"));
+  vxm_grid_destroy(grid);
   vxm_context_destroy(context);
   remove_folder(folder);
 }

@@ -74,7 +74,23 @@ def fill_values():
 def places():
     values = numpy.arange(60, dtype="<i4").reshape(3, 4, 5)
     array = create("p.zarr", values, (3, 4, 5), compressor=None)
-    assert "no \"origin\"" in read("p.zarr")[1]
+    assert "no attributes \"origin\" and" in read("p.zarr")[1]
+    # Axes as others write them; what they are not is told, and the names of xarray may be anything.
+    for said, order in (("zyx", (2, 1, 0)), ("Z, X, Y", (1, 2, 0)), (["z", "y", "x"], (2, 1, 0)), ("depth", None), (["x", "y", "y"], None),
+                        (3, None)):
+        for name in ("axes", "_ARRAY_DIMENSIONS"):
+            array.attrs.put({name: said, "origin": [1, 2, 3], "voxel_size": 1})
+            back, warned = read("p.zarr")
+            assert (back == values.transpose(order or (0, 1, 2))).all(), (said, name)
+            assert ("\"axes\" is not" in warned) == (order is None and name == "axes"), (said, name, warned)
+    for attributes, place, lacks in (({"voxel_size": 0.5}, [[0, 0, 0], [0.5] * 3], "\"origin\""),
+                                     ({"origin": [1, 2, 3], "voxel_size": [1, 2]}, [[1, 2, 3], [1] * 3], "\"voxel_size\"")):
+        array.attrs.put(attributes)
+        assert "no attribute " + lacks in read("p.zarr")[1]
+        with open(os.path.join(FOLDER, "back.npy.json")) as file:
+            told = json.load(file)
+        assert [told["origin"], told["voxel_size"]] == place, told
+    array.attrs.put({})
     array.attrs.update({"axes": "z,y,x", "origin": [1, 2, 3], "voxel_size": [0.5, 0.25, 2], "metadata": {"unit": "mm"}})
     back, warned = read("p.zarr")
     assert not warned and (back == values.transpose(2, 1, 0)).all()

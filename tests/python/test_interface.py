@@ -187,6 +187,11 @@ class Fields(unittest.TestCase):
         for wrong in ([1.0, 2], [[1.0, 2, 3]], numpy.ones((3, 3)), [1.0, 2, 3, 0, 0, 0, 0], -numpy.eye(4)):
             with self.assertRaises(voxmend.ArgumentError):
                 carver.move(wrong)
+        matrix = numpy.eye(4)
+        matrix[:3, 3] = path[0]
+        self.assertEqual(voxmend.Carver(stock, (corners, faces)).place(matrix).begin, (1, 1, 1))
+        with self.assertRaisesRegex(voxmend.ArgumentError, "transpose"):  # else it would cut about the origin
+            carver.place(matrix.T)
         with self.assertRaises(voxmend.KindError):
             voxmend.Carver(numpy.ones((2, 2, 2)), (corners, faces))
 

@@ -110,6 +110,9 @@ class Trimesh(unittest.TestCase):
             self.assertTrue((made.is_filled(grid.points) == grid.is_filled(grid.points)).all())
         ours = peers["trimesh"].creation.icosphere().voxelized(0.1)
         self.assertEqual(voxmend.VoxelGrid.from_trimesh(ours).filled_count, ours.filled_count)
+        alike = voxmend.voxelize(sample("torus"), like=ours)
+        numpy.testing.assert_allclose(alike.transform, ours.transform)
+        self.assertEqual(alike.shape, tuple(ours.shape))
         ours.apply_transform(peers["trimesh"].transformations.rotation_matrix(0.3, (0, 0, 1)))
         with self.assertRaises(voxmend.ArgumentError):
             voxmend.VoxelGrid.from_trimesh(ours)

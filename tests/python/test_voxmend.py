@@ -7,6 +7,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 import weakref
 
@@ -172,9 +173,22 @@ class Grids(unittest.TestCase):
         self.assertTrue((other.origin == like.origin).all() and other.shape == like.shape)
         for wrong in (dict(resolution=8, pitch=1), dict(pitch=-1), dict(resolution=0), dict(resolution=(1, 2)),
                       dict(fit="round"), dict(bounds=[1, 2, 3]), dict(like=like, pad=1), dict(mode="thin"), dict(method="w"),
-                      dict(thin="keep26x"), dict(thin="")):
+                      dict(bounds=[[-3, -2], [-1, 3], [4, 5]]), dict(bounds=numpy.zeros((6, 1))), dict(thin="keep26x"),
+                      dict(thin="")):
             with self.assertRaises(ValueError, msg=str(wrong)):
                 mesh.voxelize(**wrong)
+        flat = mesh.voxelize((8, 9, 10), bounds=[-3, -3, -3, 3, 4, 5])
+        self.assertEqual(flat.bounds.tolist(), [[-3, -3, -3], [3, 4, 5]])
+
+    def test_like_trimesh(self):
+        """What has the parts of a grid of trimesh lies where trimesh puts it, also where `origin` is a centre."""
+        theirs = types.SimpleNamespace(shape=(4, 5, 6), encoding=None, transform=numpy.diag([0.5, 0.5, 0.5, 1]), origin=numpy.zeros(3),
+                                       pitch=0.5)
+        grid = voxmend.voxelize(cube(), like=theirs)
+        self.assertEqual(grid.bounds.tolist(), [[-0.25] * 3, [1.75, 2.25, 2.75]])
+        theirs.transform[0, 0] = -0.5
+        with self.assertRaisesRegex(voxmend.ArgumentError, "mirrored"):
+            voxmend.voxelize(cube(), like=theirs)
 
     def test_thin_parts(self):
         sheet = ([[0, 0, 0.03], [1, 0, 0.03], [1, 1, 0.03], [0, 1, 0.03]], [[0, 1, 2, 3]])
@@ -216,6 +230,11 @@ class Grids(unittest.TestCase):
             self.assertEqual(numpy.asarray(grid, numpy.float32).sum(), matrix.sum())
             at = numpy.argwhere(matrix)[3]
             self.assertEqual(grid.is_filled([grid.indices_to_points(at), [-1, 0, 0], [999, 0, 0]]).tolist(), [True, False, False])
+            self.assertEqual((grid.is_filled([]).shape, grid.points_to_indices([4, 5, 6]).tolist()), ((0,), [0, 0, 0]))
+            for ask in (grid.is_filled, grid.to_sparse().is_filled, grid.points_to_indices, grid.indices_to_points):
+                for wrong in (5.0, [5.0], [[1], [2]], [[1, 2]], numpy.ones((3, 4))):  # numpy would take one number for three
+                    with self.assertRaises(voxmend.ArgumentError, msg=str(wrong)):
+                        ask(wrong)
         with self.assertRaises(ValueError):
             voxmend.VoxelGrid(numpy.zeros((2, 2)))
 

@@ -24,6 +24,7 @@ typedef struct header {
   double translate[3];
   double scale;
   bool has_dims, has_translate, has_scale;
+  bool is_of_trimesh; /**< a comment says so */
   size_t unknown;     /**< lines with a key that is not known */
   size_t dims_offset; /**< of the line */
   size_t data;        /**< offset of the first pair */
@@ -102,6 +103,7 @@ static vxm_status read_header(header *h, const vxm_input *input, vxm_error *erro
     if (!end)
       break;
     char words[5][64];
+    h->is_of_trimesh |= *line == '#' && memmem(line, (size_t)(end - line), "`trimesh`", 9) != NULL;
     int count = *line == '#' ? 0 : split(line, (size_t)(end - line), words, 5);
     size_t offset = at;
     at = (size_t)(end - input->data) + 1;
@@ -232,6 +234,11 @@ static void add_notes(vxm_warnings *warnings, const header *h, const oddities *f
              h->unknown == 1 ? "" : "s");
   if (h->dims[0] != h->dims[1] || h->dims[1] != h->dims[2])
     vxm_warn(warnings, "the dims differ: they are taken as x, z and y, slowest first");
+  if (h->is_of_trimesh && h->dims[0] > 1)
+    vxm_warn(warnings,
+             "written by trimesh, which has its voxels scale / (dim - 1) apart and the centre of the first "
+             "at translate: taken are scale / dim and its corner, as binvox has them; "
+             "VoxelGrid.from_trimesh keeps their place");
   if (found->odd)
     vxm_warn(warnings, "a lone byte behind the last run is ignored");
 }

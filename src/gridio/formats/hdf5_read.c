@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/hdf5_read.h"
+#include "gridio/common/array_place.h"
 #include "gridio/common/raster.h"
 #include "gridio/formats/hdf5.h"
 #include "sandbox/reader_process.h"
@@ -25,6 +26,7 @@ typedef struct receipt {
   vxm_about about;
   vxm_warnings warnings;
   int axis[3]; /**< of the grid, for each of the file */
+  bool has_odd_axes;
   vxm_space space;
   vxm_field *field;
   size_t filled; /**< bytes of its values, in the order of the file */
@@ -34,20 +36,6 @@ typedef struct receipt {
 
 static bool equals(const char *text, size_t size, const char *word) {
   return size == strlen(word) && memcmp(text, word, size) == 0;
-}
-
-/** "x,y,z" in any order. */
-static void take_axes(int axis[3], const char *text, size_t size) {
-  unsigned seen = 0;
-  int found[3];
-  for (size_t a = 0; a < 3; a++) {
-    if (size != 5 || text[2 * a] < 'x' || text[2 * a] > 'z' || (a > 0 && text[2 * a - 1] != ','))
-      return;
-    found[a] = text[2 * a] - 'x';
-    seen |= 1u << found[a];
-  }
-  if (seen == 7)
-    memcpy(axis, found, sizeof found);
 }
 
 static void take_label(vxm_about *about, vxm_context *context, const char *key, size_t key_size,
@@ -71,7 +59,7 @@ static vxm_status take_text(void *payload, const char *key, size_t key_size, con
   if (equals(key, key_size, "kind"))
     r->about.is_declared = vxm_field_kind_find(&r->about.kind, word);
   else if (equals(key, key_size, "axes"))
-    take_axes(r->axis, value, value_size);
+    r->has_odd_axes = !vxm_axes_parse(r->axis, value, value_size);
   else if (key_size > strlen(VXM_HDF5_LABEL) && memcmp(key, VXM_HDF5_LABEL, strlen(VXM_HDF5_LABEL)) == 0)
     take_label(&r->about, r->input->context, key, key_size, value, value_size);
   return VXM_OK;
@@ -81,9 +69,9 @@ static void warn_array(receipt *r, const vxm_sink_array *array) {
   if (array->fits > 1)
     vxm_warn(&r->warnings, "of its %" PRIu32 " datasets that could be voxels \"voxels\" is read",
              array->fits);
-  if (!array->has_place)
-    vxm_warn(&r->warnings,
-             "no attributes \"origin\" and \"voxel_size\" of its dataset: 0 0 0 and 1 are taken");
+  if (r->has_odd_axes)
+    vxm_axes_warn(&r->warnings);
+  vxm_place_warn(&r->warnings, array->placed);
 }
 
 /** Where nothing arrives nothing is written to, so that a short file cannot take much memory. */
@@ -91,8 +79,8 @@ static vxm_status take_array(void *payload, const vxm_sink_array *array, vxm_err
   receipt *r = payload;
   for (int a = 0; a < 3; a++) {
     r->space.dims[r->axis[a]] = array->shape[a];
-    r->space.origin[a] = array->has_place ? array->place[a] : 0;
-    r->space.voxel_size[a] = array->has_place ? array->place[3 + a] : 1;
+    r->space.origin[a] = array->placed & VXM_PLACE_ORIGIN ? array->place[a] : 0;
+    r->space.voxel_size[a] = array->placed & VXM_PLACE_SIZE ? array->place[3 + a] : 1;
   }
   vxm_status status = vxm_space_check_file(&r->space, r->input, 0, error);
   if (status != VXM_OK)

@@ -2,6 +2,7 @@
 /** What a Zarr array says of itself, in and out. */
 #include "base/endian.h"
 #include "base/open_beneath.h"
+#include "gridio/common/array_place.h"
 #include "gridio/common/json_text.h"
 #include "gridio/formats/zarr.h"
 
@@ -293,33 +294,35 @@ static vxm_status read_fill(vxm_zarr_array *out, const json_t *root, const spot 
 
 /* ---- In: attributes ---- */
 
-/** Takes three letters for the axes; false if they are not x, y and z in any order. */
-static bool take_axes(int axis[3], const char letters[3]) {
-  unsigned seen = 0;
-  for (int a = 0; a < 3; a++) {
-    if (letters[a] < 'x' || letters[a] > 'z')
+/** Takes a text, or a list of texts of which the first three count; false if they are no axes. */
+static bool take_axes(int axis[3], const json_t *from) {
+  char letters[3];
+  if (json_is_string(from))
+    return vxm_axes_parse(axis, json_string_value(from), json_string_length(from));
+  for (size_t a = 0; a < 3; a++) {
+    const json_t *name = json_array_get(from, a);
+    if (!json_is_string(name) || json_string_length(name) != 1)
       return false;
-    axis[a] = letters[a] - 'x';
-    seen |= 1u << axis[a];
+    letters[a] = *json_string_value(name);
   }
-  return seen == 7;
+  return vxm_axes_parse(axis, letters, sizeof letters);
 }
 
-/** By our own attribute or that of xarray. Without one of them the axes are x, y, z. */
+/** By our own attribute or that of xarray, whose names may be anything. Without one of them the axes are x,
+ * y, z. */
 static void read_axes(vxm_zarr_array *out, const json_t *root) {
-  const char *text = json_string_value(json_object_get(root, "axes"));
-  const json_t *names = json_object_get(root, "_ARRAY_DIMENSIONS");
-  char letters[3] = "";
-  int axis[3];
-  if (text && strlen(text) == 5 && text[1] == ',' && text[3] == ',')
-    memcpy(letters, (const char[]){text[0], text[2], text[4]}, 3);
-  else
-    for (size_t a = 0; a < 3 && json_array_size(names) >= 3; a++) {
-      const char *name = json_string_value(json_array_get(names, a));
-      letters[a] = name && strlen(name) == 1 ? *name : ' ';
-    }
-  if (take_axes(axis, letters))
-    memcpy(out->axis, axis, sizeof axis);
+  const json_t *own = json_object_get(root, "axes");
+  if (!take_axes(out->axis, own) && !take_axes(out->axis, json_object_get(root, "_ARRAY_DIMENSIONS")))
+    out->has_odd_axes = own && !json_is_null(own);
+}
+
+/** One number stands for all axes. */
+static bool read_size(double size[3], const json_t *root) {
+  const json_t *one = json_object_get(root, "voxel_size");
+  if (!json_is_number(one))
+    return vxm_json_triple(size, root, "voxel_size");
+  size[0] = size[1] = size[2] = json_number_value(one);
+  return true;
 }
 
 static void read_labels(vxm_about *about, vxm_context *context, const json_t *root) {
@@ -358,10 +361,14 @@ static void read_about(vxm_about *about, vxm_context *context, const json_t *roo
 static void read_attributes(vxm_zarr_array *out, vxm_context *context, const json_t *root) {
   vxm_space place = out->space;
   read_axes(out, root);
-  out->has_place =
-      vxm_json_triple(place.origin, root, "origin") && vxm_json_triple(place.voxel_size, root, "voxel_size");
-  if (out->has_place)
-    out->space = place;
+  if (vxm_json_triple(place.origin, root, "origin")) {
+    memcpy(out->space.origin, place.origin, sizeof place.origin);
+    out->placed |= VXM_PLACE_ORIGIN;
+  }
+  if (read_size(place.voxel_size, root)) {
+    memcpy(out->space.voxel_size, place.voxel_size, sizeof place.voxel_size);
+    out->placed |= VXM_PLACE_SIZE;
+  }
   read_about(&out->about, context, root);
 }
 

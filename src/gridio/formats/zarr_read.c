@@ -2,6 +2,7 @@
 /** .zarr in: chunks side by side, each into its place in a field. */
 #include "base/open_beneath.h"
 #include "base/threads.h"
+#include "gridio/common/array_place.h"
 #include "gridio/common/deflate.h"
 #include "gridio/common/raster.h"
 #include "gridio/formats/zarr.h"
@@ -220,8 +221,9 @@ static vxm_status load_chunks(loading *l, vxm_error *error) {
 /* ---- The array ---- */
 
 static void warn(const vxm_zarr_array *array, vxm_warnings *warnings) {
-  if (!array->has_place)
-    vxm_warn(warnings, "no \"origin\" and \"voxel_size\" in its .zattrs: 0 0 0 and 1 are taken");
+  if (array->has_odd_axes)
+    vxm_axes_warn(warnings);
+  vxm_place_warn(warnings, array->placed);
 }
 
 static vxm_status load_values(vxm_field **out, vxm_zarr_array *array, int folder, const vxm_input *input,

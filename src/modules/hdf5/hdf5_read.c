@@ -56,14 +56,17 @@ static vxm_status fail_inside(const reading *r, const char *what, vxm_error *err
 
 /* ---- Attributes ---- */
 
-/** Takes six numbers of "origin" and "voxel_size". */
-static bool read_triple(hid_t set, const char *name, double out[3]) {
+/** Takes three numbers; of "voxel_size" also one, for all axes. */
+static bool read_triple(hid_t set, const char *name, bool may_be_one, double out[3]) {
   if (H5Aexists(set, name) <= 0)
     return false;
   hid_t attribute = H5Aopen(set, name, H5P_DEFAULT);
   hid_t space = attribute >= 0 ? H5Aget_space(attribute) : -1;
-  bool good = space >= 0 && H5Sget_simple_extent_npoints(space) == 3 &&
-              H5Aread(attribute, H5T_NATIVE_DOUBLE, out) >= 0;
+  hssize_t count = space >= 0 ? H5Sget_simple_extent_npoints(space) : 0;
+  bool is_one = count == 1 && may_be_one;
+  bool good = (count == 3 || is_one) && H5Aread(attribute, H5T_NATIVE_DOUBLE, out) >= 0;
+  if (good && is_one)
+    out[1] = out[2] = out[0];
   if (space >= 0)
     H5Sclose(space);
   if (attribute >= 0)
@@ -111,6 +114,26 @@ static vxm_status send_text(const reading *r, const char *name, vxm_error *error
     return VXM_OK;
   const char *text = text_at(&found, 0, &size);
   return r->sink->text(r->sink->payload, name, strlen(name), text, size, error);
+}
+
+/** One text, or one for each axis. */
+static vxm_status send_axes(const reading *r, vxm_error *error) {
+  static const char key[] = "axes";
+  const texts found = read_texts(r, key);
+  char all[32] = "";
+  size_t filled = 0;
+  for (size_t t = 0; t < found.count && t < sizeof all; t++) {
+    size_t size;
+    const char *text = text_at(&found, t, &size);
+    if (size > sizeof all - filled)
+      size = sizeof all - filled;
+    memcpy(all + filled, text, size);
+    filled += size;
+  }
+  /* What is there and no text, such as numbers, is told as well. */
+  return found.count > 0 || H5Aexists(r->set.set, key) > 0
+             ? r->sink->text(r->sink->payload, key, strlen(key), all, filled, error)
+             : VXM_OK;
 }
 
 /** Each name of a label goes over under its count of voxels. */
@@ -205,11 +228,11 @@ static vxm_status send_head(const reading *r, const vxm_hdf5_survey *survey, vxm
   vxm_sink_array array = {.scalar = r->set.scalar, .is_color = r->set.rank == 4, .fits = survey->fitting};
   for (int a = 0; a < 3; a++)
     array.shape[a] = (int64_t)r->set.dims[a];
-  array.has_place = read_triple(r->set.set, "origin", array.place) &&
-                    read_triple(r->set.set, "voxel_size", array.place + 3);
+  array.placed = read_triple(r->set.set, "origin", false, array.place) ? 1 : 0;
+  array.placed |= read_triple(r->set.set, "voxel_size", true, array.place + 3) ? 2 : 0;
   vxm_status status = send_text(r, "kind", error);
   if (status == VXM_OK)
-    status = send_text(r, "axes", error);
+    status = send_axes(r, error);
   if (status == VXM_OK)
     status = send_labels(r, error);
   return status == VXM_OK ? r->sink->array(r->sink->payload, &array, error) : status;

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What arrays of HDF5 and Zarr, mostly of other programs, say beside their values of where these lie. */
+#ifndef VXM_GRIDIO_COMMON_ARRAY_PLACE_H
+#define VXM_GRIDIO_COMMON_ARRAY_PLACE_H
+
+#include "base/warnings.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/** What of it is there: bits. */
+enum { VXM_PLACE_ORIGIN = 1, VXM_PLACE_SIZE = 2, VXM_PLACE_WHOLE = 3 };
+
+/**
+ * Takes x, y and z in any order, large or small, with or without commas and blanks between them.
+ *
+ * @param[out] axis of the grid, for each of the array's; left as it is after false
+ * @return false if that is not what the text has
+ */
+bool vxm_axes_parse(int axis[3], const char *text, size_t size);
+
+/** Warns of axes that are something else, which may be the wrong way round as they are taken. */
+void vxm_axes_warn(vxm_warnings *warnings);
+
+/** Warns of what is missing of a place, if anything is. */
+void vxm_place_warn(vxm_warnings *warnings, unsigned there);
+
+#endif
