@@ -136,8 +136,10 @@ INLINE void lanes_pick(lanes out[2], const double *from, const int32_t *which) {
   out[1] = (lanes)_mm256_unpackhi_pd(both[0], both[1]);
 }
 
+/** By eight loads: one instruction for it is slower, where it follows stores to these places most of all. */
 INLINE wide wide_gather(const float *from, const int32_t *place) {
-  return (wide)_mm256_i32gather_ps(from, _mm256_loadu_si256((const __m256i *)(const void *)place), 4);
+  return (wide){from[place[0]], from[place[1]], from[place[2]], from[place[3]],
+                from[place[4]], from[place[5]], from[place[6]], from[place[7]]};
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {
