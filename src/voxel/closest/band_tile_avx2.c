@@ -53,42 +53,93 @@ INLINE wide wide_fma(wide a, wide b, wide c) {
   return (wide)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
 }
 
-INLINE wide_mask wide_less(wide a, wide b) {
-  return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ);
-}
-
 INLINE wide_mask wide_not_above(wide a, wide b) {
   return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_NGT_UQ);
 }
 
-INLINE wide wide_choose(wide_mask mask, wide a, wide b) {
-  return (wide)_mm256_blendv_ps((__m256)b, (__m256)a, mask);
+/** On which side of a triangle's middle points lie: 1 = below. */
+typedef __m256i wide_side;
+
+INLINE wide_side side_of(wide x) {
+  return _mm256_srli_epi32((__m256i)x, 31);
+}
+
+/** What is so on that side, out of two numbers that stand in every quarter of a vector: blending takes three
+ * operations on some processors. */
+INLINE wide pick_side(wide_side side, const float sides[2]) {
+  double both;
+  memcpy(&both, sides, sizeof both);
+  return (wide)_mm256_permutevar_ps((__m256)_mm256_set1_pd(both), side);
 }
 
 INLINE unsigned wide_bits(wide_mask mask) {
   return (unsigned)_mm256_movemask_ps(mask);
 }
 
-/** Puts the voxels of a brick that have a bit behind `count` others: half of a vector at a time. */
-INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
-  static const _Alignas(16)
-      int32_t chosen[16][4] = {{0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
-                               {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
-  const __m128i low = _mm_load_si128((const __m128i *)(const void *)chosen[bits & 15]),
-                high = _mm_load_si128((const __m128i *)(const void *)chosen[bits >> 4]);
-  const size_t second = count + (size_t)_mm_popcnt_u32(bits & 15);
-  for (int a = 0; a < 3; a++) {
-    _mm_storeu_ps(to->at[a] + count, _mm_permutevar_ps(_mm256_castps256_ps128((__m256)q[a]), low));
-    _mm_storeu_ps(to->at[a] + second, _mm_permutevar_ps(_mm256_extractf128_ps((__m256)q[a], 1), high));
-  }
-  _mm_storeu_si128((__m128i *)(void *)(to->place + count), _mm_add_epi32(low, _mm_set1_epi32(first)));
-  _mm_storeu_si128((__m128i *)(void *)(to->place + second), _mm_add_epi32(high, _mm_set1_epi32(first + 4)));
+/** For each eight bits the lanes that have one, in bytes. */
+#define LANE(bits, n) \
+  ((bits) >> (n)&1 ? (uint64_t)(n) << 8 * __builtin_popcount((bits) & ((1U << (n)) - 1)) : 0)
+#define LANES_OF(bits)                                                                             \
+  (LANE(bits, 0) | LANE(bits, 1) | LANE(bits, 2) | LANE(bits, 3) | LANE(bits, 4) | LANE(bits, 5) | \
+   LANE(bits, 6) | LANE(bits, 7))
+#define FOUR(bits) LANES_OF(bits), LANES_OF((bits) + 1), LANES_OF((bits) + 2), LANES_OF((bits) + 3)
+#define SIXTEEN(bits) FOUR(bits), FOUR((bits) + 4), FOUR((bits) + 8), FOUR((bits) + 12)
+#define MANY(bits) SIXTEEN(bits), SIXTEEN((bits) + 16), SIXTEEN((bits) + 32), SIXTEEN((bits) + 48)
+static const uint64_t lanes_of_bits[256] = {MANY(0U), MANY(64U), MANY(128U), MANY(192U)};
+
+/** The numbers of the lanes that have a bit, one behind the other. */
+INLINE __m256i lanes_chosen(unsigned bits) {
+  return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)&lanes_of_bits[bits]));
 }
 
-#include "voxel/closest/band_one_by_one.inc"
+/** Puts the voxels of a brick that have a bit behind `count` others. */
+INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
+  const __m256i lane = lanes_chosen(bits);
+  for (int a = 0; a < 3; a++)
+    _mm256_storeu_ps(to->at[a] + count, _mm256_permutevar8x32_ps((__m256)q[a], lane));
+  _mm256_storeu_si256((__m256i *)(void *)(to->place + count),
+                      _mm256_add_epi32(lane, _mm256_set1_epi32(first)));
+}
 
+/** The first `count` of a vector. */
+INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
+  for (size_t n = 0; n < count; n++)
+    to[place[n]] = x[n];
+}
+
+/** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many
+ * there are then. */
+INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, const int32_t *place,
+                        unsigned bits) {
+  const __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)place);
+  _mm256_storeu_si256((__m256i *)(void *)(to->place + count),
+                      _mm256_permutevar8x32_epi32(places, lanes_chosen(bits)));
+  _mm256_storeu_si256((__m256i *)(void *)(to->triangle + count), _mm256_set1_epi32(triangle));
+  return count + (size_t)_mm_popcnt_u32(bits);
+}
+
+/** Keeps two numbers of triangles from one that is a multiple of LANES on: those of each side by side. */
+INLINE void lanes_put(double *to, size_t triangle, lanes a, lanes b) {
+  const __m256d even = _mm256_unpacklo_pd((__m256d)a, (__m256d)b),
+                odd = _mm256_unpackhi_pd((__m256d)a, (__m256d)b);
+  _mm256_store_pd(to + 2 * triangle, _mm256_permute2f128_pd(even, odd, 0x20));
+  _mm256_store_pd(to + 2 * triangle + 4, _mm256_permute2f128_pd(even, odd, 0x31));
+}
+
+/** The two numbers of a triangle for each lane. */
+INLINE void lanes_pick(lanes out[2], const double *from, const int32_t *which) {
+  __m256d both[2];
+  for (int n = 0; n < 2; n++)
+    both[n] = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(from + 2 * (size_t)which[n])),
+                                   _mm_load_pd(from + 2 * (size_t)which[n + 2]), 1);
+  out[0] = (lanes)_mm256_unpacklo_pd(both[0], both[1]);
+  out[1] = (lanes)_mm256_unpackhi_pd(both[0], both[1]);
+}
+
+/** By eight loads: one instruction for it is slower, where it follows stores to these places most of all. */
 INLINE wide wide_gather(const float *from, const int32_t *place) {
-  return (wide)_mm256_i32gather_ps(from, _mm256_loadu_si256((const __m256i *)(const void *)place), 4);
+  return (wide){from[place[0]], from[place[1]], from[place[2]], from[place[3]],
+                from[place[4]], from[place[5]], from[place[6]], from[place[7]]};
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {

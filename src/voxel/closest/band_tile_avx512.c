@@ -54,16 +54,20 @@ INLINE wide wide_fma(wide a, wide b, wide c) {
   return (wide)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
 }
 
-INLINE wide_mask wide_less(wide a, wide b) {
-  return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
-}
-
 INLINE wide_mask wide_not_above(wide a, wide b) {
   return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_NGT_UQ);
 }
 
-INLINE wide wide_choose(wide_mask mask, wide a, wide b) {
-  return (wide)_mm512_mask_mov_ps((__m512)b, mask, (__m512)a);
+/** On which side of a triangle's middle points lie. */
+typedef wide_mask wide_side;
+
+INLINE wide_side side_of(wide x) {
+  return _mm512_cmp_ps_mask((__m512)x, _mm512_setzero_ps(), _CMP_LT_OQ);
+}
+
+/** What is so on that side: the first of two is for those that are not below. */
+INLINE wide pick_side(wide_side side, const float sides[2]) {
+  return (wide)_mm512_mask_mov_ps(_mm512_set1_ps(sides[0]), side, _mm512_set1_ps(sides[1]));
 }
 
 INLINE unsigned wide_bits(wide_mask mask) {
@@ -99,10 +103,17 @@ INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, cons
   return count + (size_t)_mm_popcnt_u32(bits);
 }
 
-/** A number for each lane out of FRAMES. */
-INLINE lanes lanes_pick(const double *from, const int32_t *which) {
+/** Keeps two numbers of triangles from one that is a multiple of LANES on, out of sixteen. */
+INLINE void lanes_put(double *to, size_t triangle, lanes a, lanes b) {
+  _mm512_store_pd(to + triangle, (__m512d)a);
+  _mm512_store_pd(to + 16 + triangle, (__m512d)b);
+}
+
+/** The two numbers of a triangle for each lane. */
+INLINE void lanes_pick(lanes out[2], const double *from, const int32_t *which) {
   const __m512i index = _mm512_cvtepi32_epi64(_mm256_loadu_si256((const __m256i *)(const void *)which));
-  return (lanes)_mm512_permutex2var_pd(_mm512_loadu_pd(from), index, _mm512_loadu_pd(from + 8));
+  for (int n = 0; n < 2; n++, from += 16)
+    out[n] = (lanes)_mm512_permutex2var_pd(_mm512_load_pd(from), index, _mm512_load_pd(from + 8));
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {

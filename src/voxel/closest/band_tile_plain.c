@@ -135,16 +135,24 @@ INLINE wide wide_fma(wide a, wide b, wide c) {
   return a * b + c;
 }
 
-INLINE wide_mask wide_less(wide a, wide b) {
-  return a < b;
-}
-
 INLINE wide_mask wide_not_above(wide a, wide b) {
   return ~(a > b);
 }
 
 INLINE wide wide_choose(wide_mask mask, wide a, wide b) {
   return (wide)((mask & (wide_mask)a) | (~mask & (wide_mask)b));
+}
+
+/** On which side of a triangle's middle points lie. */
+typedef wide_mask wide_side;
+
+INLINE wide_side side_of(wide x) {
+  return x < (wide){0};
+}
+
+/** What is so on that side: the first of two is for those that are not below. */
+INLINE wide pick_side(wide_side side, const float sides[2]) {
+  return wide_choose(side, sides[1] - (wide){0}, sides[0] - (wide){0});
 }
 
 INLINE unsigned wide_bits(wide_mask mask) {
@@ -170,7 +178,38 @@ INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t
   }
 }
 
-#include "voxel/closest/band_one_by_one.inc"
+/** The first `count` of a vector. */
+INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
+  for (size_t n = 0; n < count; n++)
+    to[place[n]] = x[n];
+}
+
+/** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many
+ * there are then. Others come along, so that all lanes have the same triangle. */
+INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, const int32_t *place,
+                        unsigned bits) {
+  for (int n = 0; n < WIDTH; n += LANES) {
+    memcpy(to->place + count, place + n, LANES * sizeof *place);
+    to->triangle[count] = triangle;
+    count += bits >> n & ((1U << LANES) - 1) ? LANES : 0;
+  }
+  return count;
+}
+
+/** Keeps two numbers of triangles from one that is a multiple of LANES on: those of each side by side. */
+INLINE void lanes_put(double *to, size_t triangle, lanes a, lanes b) {
+  to += 2 * triangle;
+  for (int n = 0; n < LANES; n++, to += 2) {
+    to[0] = a[n];
+    to[1] = b[n];
+  }
+}
+
+/** The two numbers of a triangle, which is the same in each lane. */
+INLINE void lanes_pick(lanes out[2], const double *from, const int32_t *which) {
+  for (int n = 0; n < 2; n++)
+    out[n] = from[2 * which[0] + n] - (lanes){0};
+}
 
 INLINE wide wide_gather(const float *from, const int32_t *place) {
   return (wide){from[place[0]], from[place[1]], from[place[2]], from[place[3]]};
