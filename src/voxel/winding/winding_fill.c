@@ -276,6 +276,8 @@ static void settle_brick(const vxm_winding_walk *walk, const int64_t origin[3],
                          const vxm_winding_brick *brick) {
   const fill_job *job = job_of(walk);
   brick_rows rows;
+  if (!brick->doubtful && !~brick->above[0] && !brick->above[1] && !job->confidence)
+    return; /* as the closed chain says */
   list_rows(&rows, job, origin);
   uint64_t doubtful = brick->doubtful;
   if (!job->confidence)
