@@ -159,7 +159,7 @@ static void resolve(const fill_job *job, const int64_t origin[3], uint64_t doubt
     double half = (double)brick->value[__builtin_ctzll(left)] - 0.5;
     close |= fabs(half - rint(half)) < (double)strict_doubt ? left & -left : 0;
   }
-  vxm_winding_exact(number, job->kernels, &job->mesh->tree, origin, doubtful, close);
+  vxm_winding_exact(number, job->kernels, &job->mesh->tree, origin, brick->doubtful, doubtful, close);
   for (uint64_t left = doubtful; left; left &= left - 1) {
     int v = __builtin_ctzll(left);
     double w = number[v];
