@@ -271,7 +271,8 @@ static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, b
       voter[v] = copy_of(data[v], count);
     const uint64_t *const voters[4] = {voter[0], voter[1], voter[2], fourth ? voter[3] : NULL};
     uint64_t added = 0, want_added = 0;
-    int64_t contested = builds[b]->vote(out, voters, masked ? mask : NULL, count, rule, fresh, past, &added),
+    int64_t contested =
+                builds[b]->vote(out, voters, NULL, masked ? mask : NULL, count, rule, fresh, past, &added),
             want = 0;
     for (size_t i = 0; i < count; i++) {
       uint64_t x = data[0][i], y = data[1][i], z = data[2][i], t = fourth ? data[3][i] : x;
@@ -304,6 +305,61 @@ static void test_votes_are_counted(void **state) {
 }
 
 /* ---- Placing ---- */
+
+/** What three votes count, of which those that are odd say nothing. */
+static void abstain_one(bool voter[3], const bool odd[3]) {
+  int left = 0, votes = 0;
+  for (int a = 0; a < 3; a++) {
+    left += !odd[a];
+    votes += !odd[a] && voter[a];
+  }
+  if (left == 3)
+    return;
+  const bool inside = votes == 3, some = votes > 0 || left < 2, most = votes >= 2 || (left < 2 && votes > 0);
+  voter[0] = some;
+  voter[1] = inside;
+  voter[2] = most;
+}
+
+static void test_axes_abstain(void **state) {
+  (void)state;
+  vxm_rng rng = {15};
+  uint64_t data[6][WORDS_MAX];
+  for (size_t count = 0; count <= WORDS_MAX; count++) {
+    for (int v = 0; v < 6; v++)
+      random_words(&rng, data[v], count);
+    for (size_t b = 0; b < build_count; b++) {
+      uint64_t *voter[3];
+      for (int v = 0; v < 3; v++)
+        voter[v] = copy_of(data[v], count);
+      builds[b]->abstain(voter, (const uint64_t *[]){data[3], data[4], data[5]}, count);
+      uint64_t *told[4] = {copy_of(data[0], count), copy_of(data[1], count), copy_of(data[2], count), NULL};
+      uint64_t *out = block_of(count), *mask = block_of(count), added = 0;
+      builds[b]->vote(out, (const uint64_t *const *)told, (const uint64_t *[]){data[3], data[4], data[5]},
+                      mask, count, VXM_VOTE_AUTO, true, false, &added);
+      for (size_t i = 0; i < count; i++) {
+        uint64_t any = voter[0][i] | voter[1][i] | voter[2][i], all = voter[0][i] & voter[1][i] & voter[2][i];
+        assert_true(out[i] == all && mask[i] == (any & ~all));
+      }
+      free(out);
+      free(mask);
+      for (size_t i = 0; i < 64 * count; i++) {
+        bool want[3], odd[3];
+        for (int v = 0; v < 3; v++) {
+          want[v] = data[v][i / 64] >> (i % 64) & 1;
+          odd[v] = data[3 + v][i / 64] >> (i % 64) & 1;
+        }
+        abstain_one(want, odd);
+        for (int v = 0; v < 3; v++)
+          assert_int_equal(voter[v][i / 64] >> (i % 64) & 1, want[v]);
+      }
+      for (int v = 0; v < 3; v++) {
+        free(voter[v]);
+        free(told[v]);
+      }
+    }
+  }
+}
 
 static void check_place(const double *positions, const uint32_t *entries, size_t count,
                         const vxm_affine *affine) {
@@ -570,6 +626,7 @@ int main(void) {
       cmocka_unit_test(test_nodes_are_folded),
       cmocka_unit_test(test_words_are_moved),
       cmocka_unit_test(test_votes_are_counted),
+      cmocka_unit_test(test_axes_abstain),
       cmocka_unit_test(test_points_are_placed),
       cmocka_unit_test(test_solids_are_the_same_in_every_build),
       cmocka_unit_test(test_every_build_matches_the_oracle),

@@ -261,6 +261,43 @@ static void every_combination(void **state) {
     assert_int_equal(majority[c], majority[c ^ c >> 3]);
 }
 
+/** Rows of any length, of which some words are looked at together. */
+static void long_and_short_rows(void **state) {
+  (void)state;
+  static const int64_t lengths[] = {1, 64, 65, 1000, 64 * 64, 64 * 64 + 1, 64 * 150 - 7};
+  enum { ROWS = 37, MOST = 150 * ROWS };
+  static uint64_t vote[3][MOST], before[3][MOST], along[3][MOST];
+  vxm_rng rng = {33};
+  for (size_t l = 0; l < sizeof lengths / sizeof *lengths; l++) {
+    vxm_space space = {{lengths[l], ROWS, 1}, {0, 0, 0}, {1, 1, 1}};
+    vxm_odd_lines lines = {.window = vxm_window_of(&space, layouts[0], 0, 1)};
+    const size_t row_words = lines.window.row_words;
+    for (int a = 0; a < 3; a++) {
+      lines.along[a] = along[a];
+      for (size_t w = 0; w < row_words * ROWS; w++) {
+        uint64_t mask = w % row_words + 1 == row_words ? vxm_window_tail_mask(&lines.window) : ~UINT64_C(0);
+        vote[a][w] = before[a][w] = vxm_rng_next(&rng) & mask;
+        along[a][w] = vxm_rng_next(&rng) & vxm_rng_next(&rng) & (a == 0 ? ~UINT64_C(0) : mask);
+      }
+    }
+    vxm_odd_lines_abstain(&lines, 0, (uint64_t *[]){vote[0], vote[1], vote[2]});
+    for (size_t row = 0; row < ROWS; row++)
+      for (size_t i = 0; i < 64 * row_words; i++) {
+        const size_t w = row * row_words + i / 64;
+        const bool is_in = i < (size_t)lengths[l];
+        const bool odd[3] = {is_in && along[0][row / 64] >> (row % 64) & 1, along[1][i / 64] >> (i % 64) & 1,
+                             along[2][w] >> (i % 64) & 1};
+        bool inside[3];
+        int votes = 0;
+        for (int a = 0; a < 3; a++) {
+          inside[a] = before[a][w] >> (i % 64) & 1;
+          votes += (int)(vote[a][w] >> (i % 64) & 1);
+        }
+        assert_int_equal(votes == 3 ? INSIDE : votes == 0 ? OUTSIDE : CONTESTED, verdict_of(inside, odd));
+      }
+  }
+}
+
 /** A sheet that is not flat, a triangle fan with a rim, anywhere. */
 static vxm_soup *random_sheets(vxm_rng *rng, const double mirror[3]) {
   vxm_soup *soup = shape_empty(context);
@@ -317,6 +354,7 @@ int main(void) {
       cmocka_unit_test(lines_are_those_of_the_oracle),
       cmocka_unit_test(polls_elect_what_the_oracle_elects),
       cmocka_unit_test(every_combination),
+      cmocka_unit_test(long_and_short_rows),
       cmocka_unit_test(a_mirrored_mesh_gets_mirrored_voxels),
   };
   return cmocka_run_group_tests(tests, setup, teardown);

@@ -147,24 +147,34 @@ static void fold_voters(const vote_state *state, slab *s, uint64_t *carry, const
   voters[3] = voter_of(state, s, CONES);
 }
 
-/** Takes the axes that abstain out of a slab. */
-static void leave_out_abstainers(const vote_state *state, slab *s, const uint64_t *voters[4]) {
+/** Counts the votes on some words of a slab, `at` words behind its first one; returns the contested voxels.
+ */
+static int64_t count_votes(const vote_state *state, const slab *s, const uint64_t *const voters[4], size_t at,
+                           size_t count, const uint64_t *const odd[3], uint64_t *added) {
+  const vxm_axis_vote_job *job = state->job;
+  const size_t in_window = (s->index << state->slabs.shift) * state->window->slice_words + at;
+  const uint64_t *const some[4] = {voters[0] + at, voters[1] + at, voters[2] + at, voters[3] + at};
+  return state->kernels->vote(state->window->words + in_window, some, odd,
+                              job->mask ? job->mask + in_window : NULL, count, job->rule, job->fresh,
+                              state->past && !odd, added);
+}
+
+/** The same on all of a slab, slice by slice where axes abstain. */
+static int64_t vote_on_slab(const vote_state *state, const slab *s, const uint64_t *const voters[4],
+                            uint64_t *added) {
   const size_t first = s->index << state->slabs.shift, slice = state->window->slice_words;
-  bool is_some = false;
-  for (size_t k = 0; k < s->slices; k++)
-    is_some = is_some || vxm_odd_lines_in(&state->odd, first + k);
-  if (!is_some)
-    return;
-  for (int set = MIDDLE, v = 1; set <= SLOW; set++, v++) {
-    if (voters[v] == s->words[BASE])
-      memcpy(s->words[set], s->words[BASE], s->count * sizeof *s->words[set]);
-    voters[v] = s->words[set];
+  int64_t contested = 0;
+  if (state->job->rule != VXM_VOTE_AUTO)
+    return count_votes(state, s, voters, 0, s->count, NULL, added);
+  for (size_t k = 0; k < s->slices; k++) {
+    vxm_odd_words words = vxm_odd_words_of(&state->odd, first + k);
+    if (!vxm_odd_lines_in(&state->odd, first + k))
+      contested += count_votes(state, s, voters, k * slice, slice, NULL, added);
+    else
+      while (vxm_odd_words_next(&words))
+        contested += count_votes(state, s, voters, k * slice + words.at, words.count, words.odd, added);
   }
-  s->used[BASE] = s->used[MIDDLE] = s->used[SLOW] = true;
-  for (size_t k = 0; k < s->slices; k++)
-    vxm_odd_lines_abstain(
-        &state->odd, first + k,
-        (uint64_t *[]){s->words[BASE] + k * slice, s->words[MIDDLE] + k * slice, s->words[SLOW] + k * slice});
+  return contested;
 }
 
 /** Makes the words of a slab zeros again; those of SLOW have a slice before them. */
@@ -193,13 +203,8 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
     int64_t first = (int64_t)s.index << state->slabs.shift;
     s.slices = (size_t)vxm_min(INT64_C(1) << state->slabs.shift, state->slabs.layers - first);
     s.count = s.slices * slice;
-    size_t at = (size_t)first * slice;
     fold_voters(state, &s, carry, voters);
-    if (state->job->rule == VXM_VOTE_AUTO)
-      leave_out_abstainers(state, &s, voters);
-    contested +=
-        state->kernels->vote(window->words + at, voters, state->job->mask ? state->job->mask + at : NULL,
-                             s.count, state->job->rule, state->job->fresh, state->past, &added);
+    contested += vote_on_slab(state, &s, voters, &added);
     clear(&s, slice);
     vxm_task_progress_step(&state->watch);
   }

@@ -53,10 +53,13 @@ typedef struct vxm_kernels {
   /** to |= from, from = 0; returns the OR of all words of `from`. */
   uint64_t (*move_or)(uint64_t *to, uint64_t *from, size_t count);
   /** vxm_vote_count for some words, of which `out` holds nothing yet if it is `fresh`; returns the contested
-   * voxels, and ors into *added the bits newly set. With `past` they are stored past the cache where lines
-   * are whole. */
-  int64_t (*vote)(uint64_t *out, const uint64_t *const voters[4], uint64_t *mask, size_t count, vxm_vote rule,
-                  bool fresh, bool past, uint64_t *added);
+   * voxels, and ors into *added the bits newly set. `odd` is NULL, or says where each axis abstains, as in
+   * vxm_odd_lines_abstain; then there is no fourth voter. With `past` they are stored past the cache where
+   * lines are whole. */
+  int64_t (*vote)(uint64_t *out, const uint64_t *const voters[4], const uint64_t *const odd[3],
+                  uint64_t *mask, size_t count, vxm_vote rule, bool fresh, bool past, uint64_t *added);
+  /** vxm_odd_lines_abstain for some words. */
+  void (*abstain)(uint64_t *const voters[3], const uint64_t *const odd[3], size_t count);
   /** The bricks of a node of an octree, in the order of vxm_strip_add_node, of what is flipped in it, which
    * is cleared: a prefix XOR along the four voxels of a row and on into the next brick. `inside` says for
    * each row of bricks what is inside as the node begins, then as it ends. masks[0] are the bricks that are

@@ -143,26 +143,46 @@ bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice) {
          is_some(fast_row(lines, slice), ((size_t)w->middle_dim + 63) / 64);
 }
 
+vxm_odd_words vxm_odd_words_of(const vxm_odd_lines *lines, size_t slice) {
+  return (vxm_odd_words){.lines = lines, .slice = slice};
+}
+
+/** Writes, for some words of a row, whether the row is odd and which lines across it are. That an axis
+ * abstains behind the end of a row makes no difference there, as no other does. */
+static void spread_row(vxm_odd_words *words, size_t row, size_t word, size_t count, size_t to) {
+  const vxm_odd_lines *lines = words->lines;
+  const uint64_t is_odd = -(fast_row(lines, words->slice)[row / 64] >> (row % 64) & 1);
+  const uint64_t *middle = middle_row(lines, words->slice) + word;
+  for (size_t i = 0; i < count; i++) {
+    words->along_fast[to + i] = is_odd;
+    words->along_middle[to + i] = middle[i];
+  }
+}
+
+bool vxm_odd_words_next(vxm_odd_words *words) {
+  const size_t row_words = words->lines->window.row_words, all = (size_t)words->lines->window.middle_dim;
+  words->at += words->count;
+  const size_t row = words->at / row_words, word = words->at - row * row_words;
+  if (row >= all)
+    return false;
+  /* Some whole rows, or a part of one. */
+  size_t rows = row_words < VXM_ODD_WORDS ? VXM_ODD_WORDS / row_words : 1;
+  size_t count = row_words - word < VXM_ODD_WORDS ? row_words - word : VXM_ODD_WORDS;
+  rows = all - row < rows ? all - row : rows;
+  for (size_t r = 0; r < rows; r++)
+    spread_row(words, row + r, word, count, r * count);
+  words->count = rows * count;
+  words->odd[0] = words->along_fast;
+  words->odd[1] = words->along_middle;
+  words->odd[2] = words->lines->along[2] + words->at;
+  return true;
+}
+
 void vxm_odd_lines_abstain(const vxm_odd_lines *lines, size_t slice, uint64_t *const voters[3]) {
-  const vxm_window *window = &lines->window;
-  const uint64_t *middle = middle_row(lines, slice), *fast = fast_row(lines, slice), *slow = lines->along[2],
-                 tail = vxm_window_tail_mask(window);
-  size_t at = 0;
-  for (size_t row = 0; row < (size_t)window->middle_dim; row++) {
-    const uint64_t along_row = -(fast[row / 64] >> (row % 64) & 1);
-    for (size_t i = 0; i < window->row_words; i++, at++) {
-      const uint64_t b = middle[i], c = slow[at],
-                     a = i + 1 == window->row_words ? along_row & tail : along_row;
-      if ((a | b | c) == 0)
-        continue;
-      /* Votes that count, and where two axes or three abstain. It takes two votes to call a voxel outside,
-       * and three to call it inside: what is open beside it and above it is often a skirt, not a body. */
-      const uint64_t x = voters[0][at] & ~a, y = voters[1][at] & ~b, z = voters[2][at] & ~c;
-      const uint64_t few = (a & b) | (c & (a | b)), some = x | y | z, two = (x & y) | (z & (x | y)),
-                     inside = x & y & z;
-      voters[0][at] = some | few;
-      voters[1][at] = inside;
-      voters[2][at] = inside | two | (few & some);
-    }
+  const vxm_kernels *kernels = vxm_kernels_get();
+  vxm_odd_words words = vxm_odd_words_of(lines, slice);
+  while (vxm_odd_words_next(&words)) {
+    uint64_t *const some[3] = {voters[0] + words.at, voters[1] + words.at, voters[2] + words.at};
+    kernels->abstain(some, words.odd, words.count);
   }
 }

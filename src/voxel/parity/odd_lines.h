@@ -42,6 +42,20 @@ uint64_t vxm_odd_lines_bytes(const vxm_window *window, size_t parts);
 /** Whether a line through a slice, counted from the window's first, is odd. */
 bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice);
 
+/** Some words of a slice, with a bit wherever an axis abstains. */
+enum { VXM_ODD_WORDS = 64 };
+typedef struct vxm_odd_words {
+  const vxm_odd_lines *lines;
+  size_t slice, at, count; /**< words at..at+count-1 */
+  const uint64_t *odd[3];  /**< the fast, the middle and the slow axis */
+  uint64_t along_fast[VXM_ODD_WORDS], along_middle[VXM_ODD_WORDS];
+} vxm_odd_words;
+
+/** Before the first words of a slice. */
+vxm_odd_words vxm_odd_words_of(const vxm_odd_lines *lines, size_t slice);
+/** Goes on to the next words; false behind the last ones. */
+bool vxm_odd_words_next(vxm_odd_words *words);
+
 /**
  * Takes the votes of axes that abstain out of a slice, such that a count of the three tells it all: it is
  * three where no axis abstains and all say inside, none where two axes or three are left and say outside.

@@ -24,7 +24,7 @@ static void count_slice(size_t slice, int worker, void *payload) {
   for (int v = 0; v < 4; v++)
     voters[v] = job->voters[v] ? job->voters[v] + begin : NULL;
   uint64_t added = 0;
-  int64_t contested = job->kernels->vote(job->out + begin, voters, job->mask ? job->mask + begin : NULL,
+  int64_t contested = job->kernels->vote(job->out + begin, voters, NULL, job->mask ? job->mask + begin : NULL,
                                          end - begin, job->rule, false, false, &added);
   atomic_fetch_add_explicit(&job->contested, contested, memory_order_relaxed);
   if (added)

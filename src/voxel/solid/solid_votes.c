@@ -27,6 +27,28 @@ static vxm_status fill_voters(vxm_voxel_pass *pass, const vxm_window *window, si
   return status;
 }
 
+static bool is_clear(const uint64_t *words, size_t count) {
+  size_t w = 0;
+  while (w + VXM_LINE_WORDS <= count && vxm_line_is(words + w, 0))
+    w += VXM_LINE_WORDS;
+  while (w < count && !words[w])
+    w++;
+  return w == count;
+}
+
+/** The slices from the first to the last one in which something is asked about; `mask` becomes theirs. */
+static vxm_window asked_slices(const vxm_window *window, const uint64_t **mask) {
+  vxm_window part = *window;
+  const size_t slice = window->slice_words;
+  for (; part.begin < part.end && is_clear(*mask, slice); part.begin++) {
+    part.words += slice;
+    *mask += slice;
+  }
+  while (part.begin < part.end && is_clear(*mask + (size_t)(part.end - part.begin - 1) * slice, slice))
+    part.end--;
+  return part;
+}
+
 static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *window, const uint64_t *mask,
                                    vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
@@ -39,9 +61,10 @@ static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *windo
       status = vxm_winding_mesh_place(&pass->open_winding, chain, &pass->placed, window->layout.fast,
                                       pass->mirrored, error);
   }
+  vxm_window part = pass->confidence ? *window : asked_slices(window, &mask); /* or all of the grid */
   if (status == VXM_OK)
     status =
-        vxm_winding_fill(&pass->open_winding, window, mask, pass->confidence, pass->workspace, &added, error);
+        vxm_winding_fill(&pass->open_winding, &part, mask, pass->confidence, pass->workspace, &added, error);
   pass->added |= added;
   if (added && pass->has_voxels)
     for (size_t p = vxm_voted_begin(analysis, &pass->options); p < analysis->triangles.split.part_count; p++)

@@ -45,6 +45,7 @@ typedef struct fold_state {
   int64_t first;   /**< of these, counted from the window's first one */
   const vxm_kernels *kernels;
   vxm_slabs slabs;
+  uint64_t by_row_words; /**< 2^40 / words of a row, rounded up; 0 where that is not good enough to divide */
   pthread_mutex_t mutex; /**< of `more`, `crossings` and `status` */
   vxm_status status;
   vxm_error error;
@@ -88,9 +89,15 @@ static void keep_row(fold_state *state, size_t row, const uint64_t *enter, const
   pthread_mutex_unlock(&state->mutex);
 }
 
-/** Sets the bits of the crossings of one kind. @param first the slab's first word */
+/** The row of a word of a slab. */
+static inline size_t row_of(const fold_state *state, size_t word) {
+  return state->by_row_words ? word * state->by_row_words >> 40 : word / state->out->window.row_words;
+}
+
+/** Sets the bits of the crossings of one kind, and marks their rows. @param first the slab's first word */
 static void take_crossings(fold_state *state, size_t slab, int kind, uint64_t *bits, size_t first) {
   vxm_crossing_bins *bins = &state->out->bins[kind];
+  uint32_t *counted = state->out->counted + first / state->out->window.row_words;
   for (size_t w = 0; w < bins->workers; w++) {
     vxm_crossing_bin_reader reader = vxm_crossing_bin_read(vxm_crossing_bins_at(bins, w, 0, slab), true);
     vxm_crossing_bin_piece piece;
@@ -101,6 +108,7 @@ static void take_crossings(fold_state *state, size_t slab, int kind, uint64_t *b
         if (bits[word] & bit)
           add_more(state, first + word, (unsigned)(piece.data[i] % 64), kind ? -1 : 1);
         bits[word] |= bit;
+        counted[row_of(state, word)] |= to_look_at;
       }
   }
 }
@@ -136,6 +144,25 @@ static bool parity_tells(const uint64_t *bits, const uint64_t *enter, const uint
   return wrong == 0;
 }
 
+/** Folds rows of a slab that have crossings, and clears these. @param row the first of them, of the window */
+static void fold_rows(fold_state *state, size_t row, size_t rows, uint64_t *enter, uint64_t *leave) {
+  vxm_chain_winding *out = state->out;
+  const size_t words = out->window.row_words;
+  uint64_t *bits = out->window.words + row * words;
+  for (size_t w = 0; w < rows * words; w++)
+    bits[w] = enter[w] ^ leave[w];
+  state->kernels->fold_rows(bits, words, rows, vxm_window_tail_mask(&out->window));
+  for (size_t r = 0; r < rows; r++) {
+    size_t at = r * words;
+    if (out->counted[row + r] == to_look_at && parity_tells(bits + at, enter + at, leave + at, words))
+      out->counted[row + r] = 0;
+    else
+      keep_row(state, row + r, enter + at, leave + at);
+  }
+  memset(enter, 0, rows * words * sizeof *enter);
+  memset(leave, 0, rows * words * sizeof *leave);
+}
+
 static void fold_slab(size_t task, int worker, void *payload) {
   fold_state *state = payload;
   vxm_chain_winding *out = state->out;
@@ -147,29 +174,18 @@ static void fold_slab(size_t task, int worker, void *payload) {
   size_t first = (size_t)begin * window->slice_words, count = (size_t)(end - begin) * window->slice_words;
   size_t row = first / window->row_words, rows = (size_t)(end - begin) * (size_t)window->middle_dim;
   uint64_t *enter = out->slabs + 2 * (size_t)worker * state->slabs.words, *leave = enter + state->slabs.words;
-  uint64_t *bits = window->words + first;
+  memset(window->words + first, 0, count * sizeof *window->words);
   memset(out->counted + row, 0, rows * sizeof *out->counted);
   take_crossings(state, task, 0, enter, first);
   take_crossings(state, task, 1, leave, first);
-  for (size_t r = 0; r < rows; r++) {
-    uint64_t any = 0;
-    for (size_t w = r * window->row_words; w < (r + 1) * window->row_words; w++) {
-      any |= enter[w] | leave[w];
-      bits[w] = enter[w] ^ leave[w];
-    }
-    out->counted[row + r] |= any ? to_look_at : 0;
+  for (size_t r = 0, next; r < rows; r = next) {
+    for (next = r; next < rows && out->counted[row + next]; next++)
+      ;
+    if (next == r)
+      next++;
+    else
+      fold_rows(state, row + r, next - r, enter + r * window->row_words, leave + r * window->row_words);
   }
-  state->kernels->fold_rows(bits, window->row_words, rows, vxm_window_tail_mask(window));
-  for (size_t r = 0; r < rows; r++) {
-    size_t at = r * window->row_words;
-    if (out->counted[row + r] == to_look_at &&
-        parity_tells(bits + at, enter + at, leave + at, window->row_words))
-      out->counted[row + r] = 0;
-    else if (out->counted[row + r])
-      keep_row(state, row + r, enter + at, leave + at);
-  }
-  memset(enter, 0, count * sizeof *enter);
-  memset(leave, 0, count * sizeof *leave);
   vxm_task_progress_step(&state->watch);
 }
 
@@ -335,6 +351,9 @@ vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspa
   int64_t depth = window->end - window->begin, slices = slices_at_once(out, depth);
   fold_state state = {.out = out, .kernels = vxm_kernels_get(), .error = VXM_ERROR_INIT};
   state.slabs = vxm_slabs_of(slices, out->window.slice_words, vxm_context_threads(out->context));
+  /* A slab has at most 2^20 rows, so words below row_words << 20: the error is below their square >> 20. */
+  if (window->row_words <= 1 << 10)
+    state.by_row_words = ((UINT64_C(1) << 40) + window->row_words - 1) / window->row_words;
   vxm_status status = reserve(out, in_place, state.slabs.words, error);
   if (status != VXM_OK)
     return status;

@@ -153,13 +153,17 @@ static uint64_t row_bits(uint64_t mask, int64_t from, int64_t step, int64_t coun
 /** What is still in doubt gets its number by doubles. */
 static void resolve(const fill_job *job, const int64_t origin[3], uint64_t doubtful,
                     vxm_winding_brick *brick) {
+  double number[VXM_BRICK];
+  uint64_t close = 0;
+  for (uint64_t left = doubtful; left && !job->confidence; left &= left - 1) {
+    double half = (double)brick->value[__builtin_ctzll(left)] - 0.5;
+    close |= fabs(half - rint(half)) < (double)strict_doubt ? left & -left : 0;
+  }
+  vxm_winding_exact(number, job->kernels, &job->mesh->tree, origin, brick->doubtful, doubtful, close);
   for (uint64_t left = doubtful; left; left &= left - 1) {
     int v = __builtin_ctzll(left);
-    const int64_t at[3] = {origin[0] + v % 4, origin[1] + v / 4 % 4, origin[2] + v / 16};
-    double half = (double)brick->value[v] - 0.5;
-    bool is_close = fabs(half - rint(half)) < (double)strict_doubt && !job->confidence;
-    double w = vxm_winding_exact(job->kernels, &job->mesh->tree, at, is_close);
-    uint64_t bit = UINT64_C(1) << v;
+    double w = number[v];
+    uint64_t bit = left & -left;
     brick->value[v] = (float)w;
     brick->above[0] = (brick->above[0] & ~bit) | (w > tie - 0.5 ? bit : 0);
     brick->above[1] = (brick->above[1] & ~bit) | (w > tie + 0.5 ? bit : 0);
@@ -272,6 +276,8 @@ static void settle_brick(const vxm_winding_walk *walk, const int64_t origin[3],
                          const vxm_winding_brick *brick) {
   const fill_job *job = job_of(walk);
   brick_rows rows;
+  if (!brick->doubtful && !~brick->above[0] && !brick->above[1] && !job->confidence)
+    return; /* as the closed chain says */
   list_rows(&rows, job, origin);
   uint64_t doubtful = brick->doubtful;
   if (!job->confidence)

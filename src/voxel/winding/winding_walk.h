@@ -76,14 +76,17 @@ struct vxm_winding_walk {
   int task_level;
 };
 
-/** Triangles that are seen from one point. Half a solid angle is the argument of (sides, volume), which is
- * (den, num) when it is one long. */
-enum { VXM_WINDING_SEEN = 64 };
+/** Triangles that are seen from one point. Half a solid angle is the argument of (sides, volume). */
+enum { VXM_WINDING_SEEN = 64, VXM_WINDING_SUMS = 8 };
 typedef struct vxm_winding_seen {
   size_t count;
   double corner[3][3][VXM_WINDING_SEEN]; /**< behind the last one there are numbers up to a multiple of 8 */
-  double sides[VXM_WINDING_SEEN], volume[VXM_WINDING_SEEN], product[VXM_WINDING_SEEN]; /**< of distances */
-  double den[VXM_WINDING_SEEN], num[VXM_WINDING_SEEN];
+  double sides[VXM_WINDING_SEEN], volume[VXM_WINDING_SEEN];
+  uint64_t flat; /**< those in whose plane the point may lie; they are in no sum */
+  /** Of the others, triangle t in sum t % VXM_WINDING_SUMS: half solid angles as products of complex numbers,
+   * by their arguments. A sum went round (turns + 1 where it is negative now) / 2 times. */
+  double real[VXM_WINDING_SUMS], imaginary[VXM_WINDING_SUMS];
+  int64_t turns[VXM_WINDING_SUMS];
 } vxm_winding_seen;
 
 typedef struct vxm_winding_kernels {
@@ -95,7 +98,7 @@ typedef struct vxm_winding_kernels {
    */
   void (*descend)(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
                   int level, const float samples[VXM_BRICK], size_t list, size_t count);
-  /** Finds what is to be known of triangles of which the corners are. */
+  /** Finds what is to be known of the triangles whose corners are there, and sums it up. */
   void (*see)(vxm_winding_seen *seen, const double from[3]);
 } vxm_winding_kernels;
 
