@@ -19,7 +19,8 @@ typedef struct direct_job {
   vxm_surface_pen pen; /**< that of the first thread */
   size_t rows, padded; /**< room for rows of one thread */
   size_t words;        /**< of a thread's own window, without gaps between slices */
-  uint64_t *copies;    /**< these windows, from the second thread on */
+  size_t copy_count;   /**< threads that have a task, but for the first */
+  uint64_t *copies;    /**< their windows */
   bool is_fresh;
   size_t tasks;
   vxm_task_progress watch;
@@ -47,19 +48,15 @@ static void draw_task(size_t task, int worker, void *payload) {
   vxm_task_progress_step(&job->watch);
 }
 
-static size_t copy_count(const direct_job *job) {
-  return (size_t)vxm_context_threads(job->watch.context) - 1;
-}
-
 /** Clears a slice of all windows. */
 static void clear_task(size_t slice, int worker, void *payload) {
   (void)worker;
   const direct_job *job = payload;
   const vxm_window *window = job->pen.window;
-  size_t count = rows_words(window), others = copy_count(job);
+  size_t count = rows_words(window);
   if (job->is_fresh)
     memset(vxm_window_row(window, 0, window->begin + (int64_t)slice), 0, count * sizeof *window->words);
-  for (size_t i = 0; i < others; i++)
+  for (size_t i = 0; i < job->copy_count; i++)
     memset(job->copies + i * job->words + slice * count, 0, count * sizeof *job->copies);
 }
 
@@ -68,8 +65,8 @@ static void join_task(size_t slice, int worker, void *payload) {
   (void)worker;
   const direct_job *job = payload;
   const vxm_window *window = job->pen.window;
-  size_t count = rows_words(window), others = copy_count(job);
-  for (size_t i = 0; i < others; i++)
+  size_t count = rows_words(window);
+  for (size_t i = 0; i < job->copy_count; i++)
     job->pen.build->join(vxm_window_row(window, 0, window->begin + (int64_t)slice),
                          job->copies + i * job->words + slice * count, count);
 }
@@ -77,7 +74,10 @@ static void join_task(size_t slice, int worker, void *payload) {
 static vxm_status draw_all(direct_job *job) {
   vxm_context *context = job->watch.context;
   size_t slices = (size_t)(job->pen.window->end - job->pen.window->begin);
-  vxm_parallel(context, slices, clear_task, job);
+  if (job->copies)
+    vxm_parallel(context, slices, clear_task, job);
+  for (size_t s = 0; s < slices && !job->copies; s++)
+    clear_task(s, 0, job); /* into the cache of the thread that draws */
   vxm_parallel(context, job->tasks, draw_task, job);
   if (job->watch.status == VXM_OK && job->copies)
     vxm_parallel(context, slices, join_task, job);
@@ -100,8 +100,9 @@ static vxm_status add_directly(const vxm_surface_pen *pen, bool is_fresh, vxm_er
   vxm_task_progress_start(&job.watch, context, "voxelizing the surface", job.tasks, &local);
   job.pen.rows = vxm_alloc(context, workers * job.rows, sizeof *job.pen.rows, &local);
   job.pen.row_begin = vxm_calloc(context, workers * 2 * job.padded, sizeof *job.pen.row_begin, &local);
-  if (workers > 1)
-    job.copies = vxm_alloc(context, (workers - 1) * job.words, sizeof *job.copies, &local);
+  job.copy_count = (workers < job.tasks ? workers : job.tasks) - 1;
+  if (job.copy_count > 0)
+    job.copies = vxm_alloc(context, job.copy_count * job.words, sizeof *job.copies, &local);
   vxm_status status = local.code;
   if (status == VXM_OK)
     status = draw_all(&job);
