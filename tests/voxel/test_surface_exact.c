@@ -468,7 +468,7 @@ static void test_cancelling_and_running_out(void **state) {
     if (i == 0)
       options.progress = refuse;
     else
-      options.memory_limit = 10000;
+      options.memory_limit = 2000;
     vxm_context *strict;
     assert_int_equal(vxm_context_create(&strict, &options, NULL), VXM_OK);
     vxm_soup *soup = random_mesh(&rng, &space);

@@ -3,7 +3,7 @@
  * triangle into the window. */
 #include "../mesh/soups.h"
 
-#include "voxel/surface/surface.h"
+#include "voxel/surface/surface_draw.h"
 
 enum { SIDE = 100, ROW_WORDS = 2, WORDS = SIDE * SIDE * ROW_WORDS, TRIANGLES = 150, MANY = 64 };
 
@@ -42,6 +42,8 @@ static void tiles_hold_what_the_window_does(void **state) {
   const vxm_space space = {{SIDE, SIDE, SIDE}, {0, 0, 0}, {1, 1, 1}};
   const vxm_lattice lattice = vxm_lattice_of(&space);
   vxm_context *contexts[2] = {context_of_threads(1), context_of_threads(MANY)};
+  const vxm_surface_build *builds[3];
+  size_t build_count = vxm_surface_builds(builds);
   for (int round = 0; round < 48; round++) {
     vxm_surface *surfaces[2];
     vxm_soup *soups[2];
@@ -54,7 +56,9 @@ static void tiles_hold_what_the_window_does(void **state) {
     vxm_window shape = vxm_window_of(&space, layouts[round % 3], begin, end);
     vxm_surface_kind kind = kinds[round / 2 % 2];
     bool is_fresh = round / 4 % 2;
+    vxm_surface_force(NULL);
     draw(alone, surfaces[0], &shape, kind, is_fresh, (uint64_t)round);
+    vxm_surface_force(builds[(size_t)round / 8 % build_count]);
     draw(together, surfaces[1], &shape, kind, is_fresh, (uint64_t)round);
     assert_memory_equal(together, alone, sizeof alone);
     for (int i = 0; i < 2; i++) {
@@ -62,6 +66,7 @@ static void tiles_hold_what_the_window_does(void **state) {
       vxm_soup_destroy(soups[i]);
     }
   }
+  vxm_surface_force(NULL);
   vxm_context_destroy(contexts[1]);
   vxm_context_destroy(contexts[0]);
 }

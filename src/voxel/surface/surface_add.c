@@ -19,18 +19,15 @@ typedef struct direct_job {
   vxm_surface_pen pen; /**< that of the first thread */
   size_t rows, padded; /**< room for rows of one thread */
   size_t words;        /**< of a thread's own window, without gaps between slices */
-  uint64_t *copies;    /**< these windows, from the second thread on */
+  size_t copy_count;   /**< threads that have a task, but for the first */
+  uint64_t *copies;    /**< their windows */
+  bool is_fresh;
   size_t tasks;
   vxm_task_progress watch;
 } direct_job;
 
 static size_t rows_words(const vxm_window *window) {
   return window->row_words * (size_t)window->middle_dim;
-}
-
-static void clear_window(const vxm_window *window) {
-  for (int64_t s = window->begin; s < window->end; s++)
-    memset(vxm_window_row(window, 0, s), 0, rows_words(window) * sizeof *window->words);
 }
 
 static void draw_task(size_t task, int worker, void *payload) {
@@ -51,22 +48,39 @@ static void draw_task(size_t task, int worker, void *payload) {
   vxm_task_progress_step(&job->watch);
 }
 
+/** Clears a slice of all windows. */
+static void clear_task(size_t slice, int worker, void *payload) {
+  (void)worker;
+  const direct_job *job = payload;
+  const vxm_window *window = job->pen.window;
+  size_t count = rows_words(window);
+  if (job->is_fresh)
+    memset(vxm_window_row(window, 0, window->begin + (int64_t)slice), 0, count * sizeof *window->words);
+  for (size_t i = 0; i < job->copy_count; i++)
+    memset(job->copies + i * job->words + slice * count, 0, count * sizeof *job->copies);
+}
+
 /** Joins a slice of all windows. */
 static void join_task(size_t slice, int worker, void *payload) {
   (void)worker;
   const direct_job *job = payload;
   const vxm_window *window = job->pen.window;
-  size_t count = rows_words(window), others = (size_t)vxm_context_threads(job->watch.context) - 1;
-  for (size_t i = 0; i < others; i++)
+  size_t count = rows_words(window);
+  for (size_t i = 0; i < job->copy_count; i++)
     job->pen.build->join(vxm_window_row(window, 0, window->begin + (int64_t)slice),
                          job->copies + i * job->words + slice * count, count);
 }
 
 static vxm_status draw_all(direct_job *job) {
   vxm_context *context = job->watch.context;
+  size_t slices = (size_t)(job->pen.window->end - job->pen.window->begin);
+  if (job->copies)
+    vxm_parallel(context, slices, clear_task, job);
+  for (size_t s = 0; s < slices && !job->copies; s++)
+    clear_task(s, 0, job); /* into the cache of the thread that draws */
   vxm_parallel(context, job->tasks, draw_task, job);
   if (job->watch.status == VXM_OK && job->copies)
-    vxm_parallel(context, (size_t)(job->pen.window->end - job->pen.window->begin), join_task, job);
+    vxm_parallel(context, slices, join_task, job);
   return job->watch.status == VXM_OK ? vxm_task_progress_end(&job->watch) : job->watch.status;
 }
 
@@ -77,6 +91,7 @@ static vxm_status add_directly(const vxm_surface_pen *pen, bool is_fresh, vxm_er
   size_t workers = (size_t)vxm_context_threads(context);
   direct_job job = {.pen = *pen,
                     .rows = (size_t)window->middle_dim,
+                    .is_fresh = is_fresh,
                     .words = (size_t)(window->end - window->begin) * rows_words(window),
                     .tasks = 1 + pen->surface->triangle_count / TRIANGLES};
   job.padded = job.rows + (size_t)2 * VXM_SURFACE_LANES;
@@ -85,14 +100,12 @@ static vxm_status add_directly(const vxm_surface_pen *pen, bool is_fresh, vxm_er
   vxm_task_progress_start(&job.watch, context, "voxelizing the surface", job.tasks, &local);
   job.pen.rows = vxm_alloc(context, workers * job.rows, sizeof *job.pen.rows, &local);
   job.pen.row_begin = vxm_calloc(context, workers * 2 * job.padded, sizeof *job.pen.row_begin, &local);
-  if (workers > 1)
-    job.copies = vxm_calloc(context, (workers - 1) * job.words, sizeof *job.copies, &local);
+  job.copy_count = (workers < job.tasks ? workers : job.tasks) - 1;
+  if (job.copy_count > 0)
+    job.copies = vxm_alloc(context, job.copy_count * job.words, sizeof *job.copies, &local);
   vxm_status status = local.code;
-  if (status == VXM_OK) {
-    if (is_fresh)
-      clear_window(window);
+  if (status == VXM_OK)
     status = draw_all(&job);
-  }
   vxm_free(context, job.copies);
   vxm_free(context, job.pen.row_begin);
   vxm_free(context, job.pen.rows);

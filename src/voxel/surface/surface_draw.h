@@ -56,6 +56,21 @@ enum {
   VXM_SURFACE_AT_ONCE = 512 /**< triangles that are best drawn in one call */
 };
 
+/** How a window is cut into tiles. */
+typedef struct vxm_surface_cut {
+  int row_bits, slice_bits; /**< a tile has 2^row_bits rows of 2^slice_bits slices */
+  size_t across;            /**< tiles side by side in a band of slices */
+} vxm_surface_cut;
+
+/**
+ * The tiles that a triangle's box meets: the number of the first one times VXM_SURFACE_PLACE_MOST and how
+ * many bands of slices less one, times VXM_SURFACE_PLACE_MOST and how many tiles in each less one. There are
+ * far fewer than 2^28 tiles, which would be terabytes.
+ */
+#define VXM_SURFACE_PLACE_MOST 4
+#define VXM_SURFACE_PLACE_LARGE (UINT32_MAX - 1) /* that is more bands, or more tiles in each */
+#define VXM_SURFACE_NOWHERE UINT32_MAX           /* it is beyond the window */
+
 typedef struct vxm_surface_build vxm_surface_build;
 
 /** What one task draws with. */
@@ -87,6 +102,10 @@ struct vxm_surface_build {
   /** Draws triangles begin..end-1 of a list, or of the surface (NULL), whose points are narrow. Returns about
    * how many rows it looked at. The tile has fewer than 2^31 words. */
   size_t (*draw_narrow)(const vxm_surface_pen *pen, const uint32_t *list, size_t begin, size_t end);
+  /** Writes the places in a window, which is the pen's tile, of triangles begin..end-1 of the surface, whose
+   * points are narrow. */
+  void (*place_narrow)(const vxm_surface_pen *pen, const vxm_surface_cut *cut, uint32_t *out, size_t begin,
+                       size_t end);
   /** to = from, past the caches, and from = 0. */
   void (*put)(uint64_t *to, uint64_t *from, size_t count);
   /** to |= from, and from = 0. */

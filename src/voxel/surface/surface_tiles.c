@@ -10,18 +10,15 @@
 #include <string.h>
 
 enum {
-  TILE_WORDS = 1 << 15,   /**< 256 KiB: half of a usual second-level cache */
+  TILE_WORDS = 1 << 16,   /**< 512 KiB: within a usual second-level cache */
   LINE_WORDS = 8,         /**< a line of the cache */
   LARGE_WORDS = 1 << 23,  /**< windows that no cache holds: 64 MiB */
   TILES_PER_THREAD = 8,   /**< so that threads end at about the same time */
   CHUNK = 4096,           /**< triangles that one task sorts, at least */
   COUNTERS_MAX = 1 << 20, /**< for all chunks together, unless one chunk needs more */
   LISTED_MIN = 1 << 20,   /**< triangles listed at once, at least */
-  BOXED_MAX = 4           /**< bands and tiles in each up to which a triangle is sorted by its box alone */
+  MOST = VXM_SURFACE_PLACE_MOST
 };
-
-/** What a narrow point has along x, y and z, and a number that does not matter. */
-typedef int32_t lanes __attribute__((vector_size(16)));
 
 typedef struct tiling {
   const vxm_surface *surface;
@@ -29,11 +26,10 @@ typedef struct tiling {
   bool is_fresh;
   vxm_surface_take_fn take; /**< NULL: tiles go to the window */
   void *payload;
-  bool in_place;   /**< tiles are drawn in the window itself */
-  lanes low, high; /**< the window along x, y and z: its first voxels, and those beyond it */
+  bool in_place; /**< tiles are drawn in the window itself */
   size_t tile_words;
-  int row_bits, slice_bits;  /**< a tile has 2^row_bits rows of 2^slice_bits slices */
-  size_t across, tile_count; /**< tiles side by side in a slice, and in all */
+  vxm_surface_cut cut;
+  size_t tile_count;
   size_t chunks;
   size_t *counters;  /**< chunks x tile_count: triangles, and while listing the next place in the list */
   size_t first, end; /**< the tiles that are listed at present */
@@ -66,13 +62,8 @@ static int least(int a, int b) {
 /** Cuts the window into tiles of the shape that was chosen. */
 static void cut_window(tiling *t) {
   const vxm_window *window = t->pen.window;
-  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
-  for (int role = 0; role < 3; role++) {
-    t->low[axis[role]] = (int32_t)t->pen.tile.begin[role];
-    t->high[axis[role]] = (int32_t)vxm_min(t->pen.tile.end[role], INT32_MAX);
-  }
-  t->across = (size_t)((window->middle_dim - 1) >> t->row_bits) + 1;
-  t->tile_count = t->across * ((size_t)((window->end - window->begin - 1) >> t->slice_bits) + 1);
+  t->cut.across = (size_t)((window->middle_dim - 1) >> t->cut.row_bits) + 1;
+  t->tile_count = t->cut.across * ((size_t)((window->end - window->begin - 1) >> t->cut.slice_bits) + 1);
 }
 
 static void choose_chunks(tiling *t) {
@@ -92,8 +83,8 @@ static void choose_tiles(tiling *t) {
   int64_t shares = threads > 1 ? (int64_t)threads * TILES_PER_THREAD : 1;
   int64_t fair = vxm_max(1, rows * slices / shares);
   int size = log2_floor(vxm_min(fitting, fair));
-  t->slice_bits = least(least(size / 2, log2_ceil(slices)), log2_floor(VXM_SURFACE_SLICES));
-  t->row_bits = least(size - t->slice_bits, log2_ceil(rows));
+  t->cut.slice_bits = least(least(size / 2, log2_ceil(slices)), log2_floor(VXM_SURFACE_SLICES));
+  t->cut.row_bits = least(size - t->cut.slice_bits, log2_ceil(rows));
   t->in_place = (size_t)slices * window->slice_words < LARGE_WORDS;
   cut_window(t);
 }
@@ -101,10 +92,10 @@ static void choose_tiles(tiling *t) {
 static vxm_surface_box tile_box(const tiling *t, size_t tile) {
   const vxm_window *window = t->pen.window;
   vxm_surface_box box = t->pen.tile;
-  box.begin[VXM_MIDDLE] = (int64_t)(tile % t->across) << t->row_bits;
-  box.end[VXM_MIDDLE] = vxm_min(box.begin[VXM_MIDDLE] + (INT64_C(1) << t->row_bits), window->middle_dim);
-  box.begin[VXM_SLOW] = window->begin + ((int64_t)(tile / t->across) << t->slice_bits);
-  box.end[VXM_SLOW] = vxm_min(box.begin[VXM_SLOW] + (INT64_C(1) << t->slice_bits), window->end);
+  box.begin[VXM_MIDDLE] = (int64_t)(tile % t->cut.across) << t->cut.row_bits;
+  box.end[VXM_MIDDLE] = vxm_min(box.begin[VXM_MIDDLE] + (INT64_C(1) << t->cut.row_bits), window->middle_dim);
+  box.begin[VXM_SLOW] = window->begin + ((int64_t)(tile / t->cut.across) << t->cut.slice_bits);
+  box.end[VXM_SLOW] = vxm_min(box.begin[VXM_SLOW] + (INT64_C(1) << t->cut.slice_bits), window->end);
   return box;
 }
 
@@ -125,113 +116,70 @@ static void sort_into(const tiling *t, size_t first, size_t end, size_t *counter
 /** The same for as many tiles from `first` on in each of some bands of slices. */
 static void sort_boxed(const tiling *t, size_t first, size_t bands, size_t width, size_t *counter,
                        uint32_t *list, uint32_t triangle) {
-  for (size_t b = 0; b < bands; b++, first += t->across)
+  for (size_t b = 0; b < bands; b++, first += t->cut.across)
     sort_into(t, first, first + width, counter, list, triangle);
 }
 
 /** A triangle that may be large: in each band of slices only the tiles that it may touch there. */
 static void sort_large(const tiling *t, const vxm_point *const v[3], const vxm_surface_box *box,
                        size_t *counter, uint32_t *list, uint32_t triangle) {
-  int64_t base = t->pen.window->begin, thickness = INT64_C(1) << t->slice_bits;
+  int64_t base = t->pen.window->begin, thickness = INT64_C(1) << t->cut.slice_bits;
   vxm_surface_shadow shadow;
-  bool is_wide = (box->end[VXM_MIDDLE] - 1) >> t->row_bits > box->begin[VXM_MIDDLE] >> t->row_bits;
+  bool is_wide = (box->end[VXM_MIDDLE] - 1) >> t->cut.row_bits > box->begin[VXM_MIDDLE] >> t->cut.row_bits;
   if (is_wide)
     vxm_surface_shadow_of(&shadow, &t->pen, v);
-  int64_t last = (box->end[VXM_SLOW] - 1 - base) >> t->slice_bits;
-  for (int64_t band = (box->begin[VXM_SLOW] - base) >> t->slice_bits; band <= last; band++) {
-    int64_t s_begin = base + (band << t->slice_bits), begin = box->begin[VXM_MIDDLE],
+  int64_t last = (box->end[VXM_SLOW] - 1 - base) >> t->cut.slice_bits;
+  for (int64_t band = (box->begin[VXM_SLOW] - base) >> t->cut.slice_bits; band <= last; band++) {
+    int64_t s_begin = base + (band << t->cut.slice_bits), begin = box->begin[VXM_MIDDLE],
             end = box->end[VXM_MIDDLE];
     if (is_wide)
       vxm_surface_shadow_rows(&shadow, vxm_max(s_begin, box->begin[VXM_SLOW]),
                               vxm_min(s_begin + thickness, box->end[VXM_SLOW]), &begin, &end);
     if (begin >= end)
       continue;
-    size_t row = (size_t)band * t->across;
-    sort_into(t, row + (size_t)(begin >> t->row_bits), row + (size_t)((end - 1) >> t->row_bits) + 1, counter,
-              list, triangle);
+    size_t row = (size_t)band * t->cut.across;
+    sort_into(t, row + (size_t)(begin >> t->cut.row_bits), row + (size_t)((end - 1) >> t->cut.row_bits) + 1,
+              counter, list, triangle);
   }
 }
 
-/**
- * What the first pass finds of a triangle: its first tile, and how many bands and tiles in each less one.
- * There are far fewer than 2^28 tiles, which would be terabytes.
- */
-static const uint32_t place_nowhere = UINT32_MAX, place_large = UINT32_MAX - 1;
-
+/** As a build's place_narrow, of any triangle. */
 static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm_surface_box *box) {
   const vxm_window *window = t->pen.window;
   *box = vxm_surface_bounds_of(t->pen.lattice, window->layout, v).box;
   if (!vxm_surface_meet(box, &t->pen.tile))
-    return place_nowhere;
-  size_t low = (size_t)(box->begin[VXM_SLOW] - window->begin) >> t->slice_bits;
-  size_t high = (size_t)(box->end[VXM_SLOW] - 1 - window->begin) >> t->slice_bits;
-  size_t left = (size_t)box->begin[VXM_MIDDLE] >> t->row_bits;
-  size_t right = (size_t)(box->end[VXM_MIDDLE] - 1) >> t->row_bits;
-  if (high - low >= BOXED_MAX || right - left >= BOXED_MAX)
-    return place_large;
-  return (uint32_t)(((low * t->across + left) * BOXED_MAX + (high - low)) * BOXED_MAX + (right - left));
+    return VXM_SURFACE_NOWHERE;
+  size_t low = (size_t)(box->begin[VXM_SLOW] - window->begin) >> t->cut.slice_bits;
+  size_t high = (size_t)(box->end[VXM_SLOW] - 1 - window->begin) >> t->cut.slice_bits;
+  size_t left = (size_t)box->begin[VXM_MIDDLE] >> t->cut.row_bits;
+  size_t right = (size_t)(box->end[VXM_MIDDLE] - 1) >> t->cut.row_bits;
+  if (high - low >= MOST || right - left >= MOST)
+    return VXM_SURFACE_PLACE_LARGE;
+  return (uint32_t)(((low * t->cut.across + left) * MOST + (high - low)) * MOST + (right - left));
 }
 
-static inline lanes lower(lanes a, lanes b) {
-  lanes is_a = a < b;
-  return (a & is_a) | (b & ~is_a);
+/** The first pass: places of triangles begin..end-1. */
+static void place_some(const tiling *t, size_t begin, size_t end) {
+  if (!t->surface->wide) {
+    t->pen.build->place_narrow(&t->pen, &t->cut, t->places + begin, begin, end);
+    return;
+  }
+  for (size_t i = begin; i < end; i++) {
+    const vxm_point *v[3];
+    vxm_point room[3];
+    vxm_surface_box box;
+    vxm_surface_corners(t->surface, i, v, room);
+    t->places[i] = place_triangle(t, v, &box);
+  }
 }
 
-static inline lanes upper(lanes a, lanes b) {
-  lanes is_a = a > b;
-  return (a & is_a) | (b & ~is_a);
-}
-
-/** The same of a triangle whose points are narrow, all axes at once. */
-static inline uint32_t place_narrow(const tiling *t, size_t triangle) {
-  const uint32_t *corner = t->surface->corners + 3 * triangle;
-  const vxm_lattice *lattice = t->pen.lattice;
-  const vxm_layout layout = t->pen.window->layout;
-  lanes p[3];
-  for (int c = 0; c < 3; c++)
-    memcpy(&p[c], t->surface->narrow[corner[c]], sizeof p[c]);
-  lanes low = lower(lower(p[0], p[1]), p[2]), high = upper(upper(p[0], p[1]), p[2]);
-  low = upper(((low + (int32_t)(lattice->unit - 1)) >> lattice->bits) - 1, t->low);
-  high = lower((high >> lattice->bits) + 1, t->high) - 1;
-  lanes is_beyond = low > high;
-  int32_t first[4], last[4];
-  memcpy(first, &low, sizeof first);
-  memcpy(last, &high, sizeof last);
-  if (is_beyond[0] | is_beyond[1] | is_beyond[2])
-    return place_nowhere;
-  int32_t begin = (int32_t)t->pen.window->begin;
-  uint32_t low_band = (uint32_t)(first[layout.slow] - begin) >> t->slice_bits;
-  uint32_t bands = ((uint32_t)(last[layout.slow] - begin) >> t->slice_bits) - low_band;
-  uint32_t left = (uint32_t)first[layout.middle] >> t->row_bits;
-  uint32_t width = ((uint32_t)last[layout.middle] >> t->row_bits) - left;
-  if (bands >= BOXED_MAX || width >= BOXED_MAX)
-    return place_large;
-  return ((low_band * (uint32_t)t->across + left) * BOXED_MAX + bands) * BOXED_MAX + width;
-}
-
-static uint32_t place_any(const tiling *t, size_t triangle) {
-  const vxm_point *v[3];
-  vxm_point room[3];
-  vxm_surface_box box;
-  if (!t->surface->wide)
-    return place_narrow(t, triangle);
-  vxm_surface_corners(t->surface, triangle, v, room);
-  return place_triangle(t, v, &box);
-}
-
-static void sort_chunk(size_t chunk, int worker, void *payload) {
-  tiling *t = payload;
-  size_t end = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk + 1);
-  size_t *counter = t->counters + chunk * t->tile_count;
-  for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++) {
-    if (i % VXM_ASK_STEPS == 0 && vxm_task_progress_stopped(&t->watch, worker))
-      return;
-    if (!t->list)
-      t->places[i] = place_any(t, i);
+/** Counts triangles begin..end-1 in their tiles, or lists them there. */
+static void sort_some(const tiling *t, size_t *counter, size_t begin, size_t end) {
+  for (size_t i = begin; i < end; i++) {
     uint32_t place = t->places[i];
-    if (place == place_nowhere)
+    if (place == VXM_SURFACE_NOWHERE)
       continue;
-    if (place == place_large) {
+    if (place == VXM_SURFACE_PLACE_LARGE) {
       const vxm_point *v[3];
       vxm_point room[3];
       vxm_surface_box box;
@@ -239,8 +187,23 @@ static void sort_chunk(size_t chunk, int worker, void *payload) {
       place_triangle(t, v, &box);
       sort_large(t, v, &box, counter, t->list, (uint32_t)i);
     } else
-      sort_boxed(t, place / (BOXED_MAX * BOXED_MAX), place / BOXED_MAX % BOXED_MAX + 1, place % BOXED_MAX + 1,
-                 counter, t->list, (uint32_t)i);
+      sort_boxed(t, place / (MOST * MOST), place / MOST % MOST + 1, place % MOST + 1, counter, t->list,
+                 (uint32_t)i);
+  }
+}
+
+static void sort_chunk(size_t chunk, int worker, void *payload) {
+  tiling *t = payload;
+  size_t end = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk + 1);
+  size_t *counter = t->counters + chunk * t->tile_count;
+  for (size_t from = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk), to; from < end;
+       from = to) {
+    to = end - from < VXM_ASK_STEPS ? end : from + VXM_ASK_STEPS;
+    if (vxm_task_progress_stopped(&t->watch, worker))
+      return;
+    if (!t->list)
+      place_some(t, from, to);
+    sort_some(t, counter, from, to);
   }
 }
 
@@ -311,7 +274,7 @@ static void draw_tile(size_t task, int worker, void *payload) {
     return;
   vxm_surface_pen pen = t->pen;
   pen.tile = tile_box(t, t->first + task);
-  size_t room = (size_t)1 << t->row_bits, padded = room + (size_t)2 * VXM_SURFACE_LANES;
+  size_t room = (size_t)1 << t->cut.row_bits, padded = room + (size_t)2 * VXM_SURFACE_LANES;
   pen.rows += (size_t)worker * room;
   pen.row_begin += (size_t)worker * 2 * padded;
   pen.row_end = pen.row_begin + padded;
@@ -354,9 +317,9 @@ static vxm_status reserve(tiling *t) {
   vxm_context *context = t->surface->context;
   choose_chunks(t);
   /* Slices a power of two apart would share few sets of the caches. */
-  t->pen.slice_words = (t->pen.window->row_words << t->row_bits) + LINE_WORDS;
-  t->tile_words = t->pen.slice_words << t->slice_bits;
-  size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t->row_bits;
+  t->pen.slice_words = (t->pen.window->row_words << t->cut.row_bits) + LINE_WORDS;
+  t->tile_words = t->pen.slice_words << t->cut.slice_bits;
+  size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t->cut.row_bits;
   t->counters = vxm_calloc(context, t->chunks * t->tile_count, sizeof *t->counters, t->error);
   t->places = vxm_alloc(context, t->surface->triangle_count, sizeof *t->places, t->error);
   t->begin = vxm_alloc(context, t->tile_count + 1, sizeof *t->begin, t->error);
@@ -401,7 +364,7 @@ vxm_status vxm_surface_take_tiles(const vxm_surface_pen *pen, int bits, vxm_surf
                                   void *payload, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   tiling t = {.surface = pen->surface, .pen = *pen, .take = take, .payload = payload, .error = &local};
-  t.row_bits = t.slice_bits = bits;
+  t.cut.row_bits = t.cut.slice_bits = bits;
   /* Bands of slices, so that counters, one for each tile and chunk, stay few. */
   vxm_window band = *pen->window;
   int64_t across = ((band.middle_dim - 1) >> bits) + 1, all = pen->window->end;
