@@ -116,7 +116,7 @@ const uint64_t *vxm_grid_words(const vxm_grid *grid) {
   return grid ? grid->words : NULL;
 }
 
-void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
+void vxm_grid_count_hash(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
   vxm_window window = vxm_window_of_grid(grid);
   vxm_count_hash sum = vxm_count_hash_start(&grid->space);
   vxm_count_hash_add(&sum, grid->context, &window, NULL);
@@ -128,7 +128,7 @@ int64_t vxm_grid_count(const vxm_grid *grid) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (grid)
-    vxm_grid_sum(grid, &count, &hash);
+    vxm_grid_count_hash(grid, &count, &hash);
   return count;
 }
 
@@ -136,7 +136,7 @@ uint64_t vxm_grid_hash(const vxm_grid *grid) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (grid)
-    vxm_grid_sum(grid, &count, &hash);
+    vxm_grid_count_hash(grid, &count, &hash);
   return hash;
 }
 

@@ -30,7 +30,7 @@ uint64_t vxm_space_bytes(const vxm_space *space);
 vxm_status vxm_grid_add_confidence(vxm_grid *grid, vxm_error *error);
 
 /** vxm_grid_count and vxm_grid_hash in one go. */
-void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash);
+void vxm_grid_count_hash(const vxm_grid *grid, int64_t *count, uint64_t *hash);
 
 static inline uint64_t *vxm_grid_row(const vxm_grid *grid, int64_t j, int64_t k) {
   return grid->words + (size_t)k * grid->slice_words + (size_t)j * grid->row_words;
