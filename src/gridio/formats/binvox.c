@@ -238,7 +238,7 @@ static void add_warnings(vxm_warnings *warnings, const header *h, const oddities
     vxm_warn(warnings,
              "written by trimesh, which has its voxels scale / (dim - 1) apart and the centre of the first "
              "at translate: taken are scale / dim and its corner, as binvox has them; "
-             "VoxelGrid.from_trimesh keeps their place");
+             "in Python, VoxelGrid.from_trimesh keeps their place");
   if (found->odd)
     vxm_warn(warnings, "a lone byte behind the last run is ignored");
 }
