@@ -32,6 +32,17 @@ vxm_status vxm_space_check(const vxm_space *space, vxm_error *error) {
   return VXM_OK;
 }
 
+vxm_status vxm_space_check_sizes(const vxm_space *space, vxm_error *error) {
+  const double *s = space->voxel_size, least = fmin(s[0], fmin(s[1], s[2]));
+  if (least >= VXM_VOXEL_SIZE_MIN)
+    return VXM_OK;
+  return vxm_fail(
+      error, VXM_ERROR_RANGE,
+      "voxels of size %g are too small to be computed with; choose larger ones, or scale the model "
+      "up",
+      least);
+}
+
 uint64_t vxm_space_bytes(const vxm_space *space) {
   return ((uint64_t)space->dims[0] + 63) / 64 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2] * 8;
 }

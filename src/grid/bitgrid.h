@@ -21,8 +21,14 @@ struct vxm_grid {
   vxm_warnings warnings;
 };
 
-/** Checks dims (1 to VXM_DIM_MAX, ), finite origin, positive finite voxel size. */
+/** Smaller voxels have no inverse that can be multiplied by the steps of a lattice, at most 2^16. */
+#define VXM_VOXEL_SIZE_MIN 0x1p-1007
+
+/** Checks dims (1 to VXM_DIM_MAX), finite origin, positive finite voxel size. */
 vxm_status vxm_space_check(const vxm_space *space, vxm_error *error);
+/** Checks that meshes can be made into voxels as small as those of a space that has been checked. @return
+ * VXM_OK, VXM_ERROR_RANGE */
+vxm_status vxm_space_check_sizes(const vxm_space *space, vxm_error *error);
 /** Bytes that a grid of this space takes. The space has been checked. */
 uint64_t vxm_space_bytes(const vxm_space *space);
 

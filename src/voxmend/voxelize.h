@@ -109,7 +109,7 @@ typedef struct vxm_space_options {
  * Chooses a voxel space for a mesh.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if the mesh has no extent; VXM_ERROR_RANGE beyond 2^20
- * voxels along an axis
+ * voxels along an axis, or for voxels below 2^-1007, about 7e-304
  */
 VXM_API vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm_space_options *options,
                                  vxm_error *error);

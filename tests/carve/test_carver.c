@@ -388,6 +388,13 @@ static void what_cannot_be_is_refused(void **state) {
   vxm_mesh *other = mesh_of(NULL, &large);
   assert_int_equal(vxm_carver_create(&none, grid, other, NULL), VXM_ERROR_RANGE);
   assert_null(none);
+  static const vxm_space tiny = {{8, 8, 8}, {0, 0, 0}, {1e-310, 1e-310, 1e-310}};
+  vxm_grid *small;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_grid_create(&small, NULL, &tiny, NULL), VXM_OK);
+  assert_int_equal(vxm_carver_create(&none, small, other, &error), VXM_ERROR_RANGE);
+  assert_non_null(strstr(error.text, "too small to be computed with"));
+  vxm_grid_destroy(small);
   vxm_mesh_destroy(other);
   vxm_carver_destroy(carver);
   vxm_mesh_destroy(mesh);
