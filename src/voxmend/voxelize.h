@@ -184,8 +184,8 @@ typedef struct vxm_voxelize_report {
  * @param space       where the voxels lie; NULL = defaults
  * @param options     how; NULL = defaults
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners;
- *         VXM_ERROR_RANGE if a vertex lies too far outside the grid; VXM_ERROR_MEMORY,
- *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ *         VXM_ERROR_RANGE if a vertex lies too far outside the grid, or voxels are too small, as
+ * vxm_space_fit says; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
  * give the same bits, except where a part cuts through itself, which the winding number fills, and the
