@@ -27,7 +27,7 @@ class Sampler:
         pad: voxels kept free on each side of the model before it is moved.
         seed: 64 bits.
         rotate: None; "any": uniform over all rotations; "x", "y", "z" or (3,): about an axis; (n, 3, 3): of which variant
-            `index` takes number index % n.
+            `index` takes number index % n; rotations alone, `mirror` is for what mirrors.
         scale: each axis is scaled by a factor of its own, uniform in 1 - scale to 1 + scale.
         displace: how far vertices are displaced, as a fraction of the width of the grid.
         displacement: "uniform": by up to that along each axis; "normal": with that deviation.

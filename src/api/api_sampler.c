@@ -4,6 +4,7 @@
 #include "augment/sampler.h"
 #include "augment/unpack_bits.h"
 #include "base/sized.h"
+#include "mesh/rotation.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -23,14 +24,9 @@ static vxm_status check_rotations(const vxm_sampler_options *options, vxm_error 
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: %" PRId64 " rotations are more than memory can hold",
                     options->rotation_count);
   for (int64_t r = 0; r < options->rotation_count; r++)
-    for (int i = 0; i < 3; i++)
-      for (int k = 0; k < 3; k++) {
-        const double *m = options->rotations + 9 * r, *p = m + (ptrdiff_t)3 * i, *q = m + (ptrdiff_t)3 * k;
-        double product = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-        if (!(fabs(product - (i == k)) < 1e-3))
-          return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                          "sampler: matrix %" PRId64 " of the list is not a rotation", r);
-      }
+    if (!vxm_is_rotation(options->rotations + 9 * r))
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "sampler: matrix %" PRId64 " of the list is no rotation: " VXM_ROTATION_TEXT, r);
   return VXM_OK;
 }
 

@@ -73,7 +73,9 @@ static vxm_status measure(vxm_carver *carver, double *longest, double *mean, vxm
 /** Chooses a lattice on which faces and paths fit what is computed with. */
 static vxm_status choose_lattice(vxm_carver *carver, vxm_error *error) {
   double longest = 0, mean = 0;
-  vxm_status status = measure(carver, &longest, &mean, error);
+  vxm_status status = vxm_space_check_sizes(vxm_stock_space(&carver->stock), error);
+  if (status == VXM_OK)
+    status = measure(carver, &longest, &mean, error);
   if (status != VXM_OK)
     return status;
   carver->lattice = vxm_lattice_of(vxm_stock_space(&carver->stock));

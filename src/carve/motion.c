@@ -1,25 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "carve/motion.h"
+#include "mesh/rotation.h"
 
 #include <math.h>
 #include <string.h>
-
-/** What the product of two rows of a rotation may be off by. */
-static const double tolerance = 1e-3;
-
-static bool is_rotation(const double m[9]) {
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) {
-      double product = 0;
-      for (int a = 0; a < 3; a++)
-        product += m[3 * i + a] * m[3 * k + a];
-      if (!(fabs(product - (i == k)) < tolerance))
-        return false;
-    }
-  double determinant = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-                       m[2] * (m[3] * m[7] - m[4] * m[6]);
-  return determinant > 0;
-}
 
 static void normalize(double q[4]) {
   double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -56,8 +40,9 @@ vxm_status vxm_tool_pose_read(vxm_tool_pose *out, const double matrix[12], vxm_e
     memcpy(m + 3 * row, matrix + 4 * row, 3 * sizeof *m);
     out->place[row] = matrix[4 * row + 3];
   }
-  if (!is_rotation(m))
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "carver: the first three columns of the pose are no rotation");
+  if (!vxm_is_rotation(m))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "carver: the first three columns of the pose are no rotation: " VXM_ROTATION_TEXT);
   quaternion_of(out->turn, m);
   return VXM_OK;
 }

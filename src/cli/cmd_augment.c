@@ -22,6 +22,16 @@ static bool add_number(double **numbers, size_t *count, size_t *room, double val
   return true;
 }
 
+/** Passes over the mark that spreadsheets put before UTF-8. @return 0 for what begins as that does, but is
+ * not it; else 1 */
+static int pass_mark(FILE *file) {
+  int c = getc(file);
+  if (c == 0xef)
+    return getc(file) == 0xbb && getc(file) == 0xbf;
+  ungetc(c, file);
+  return 1;
+}
+
 /** Numbers separated by blanks, commas or lines; nine make a matrix. */
 static int read_rotations(cli_run *cli, augment_request *given, double **numbers) {
   const char *path = given->rotations;
@@ -30,9 +40,9 @@ static int read_rotations(cli_run *cli, augment_request *given, double **numbers
     return cli_fail_text(cli, "%s: cannot read the rotations: %s", path, strerror(errno));
   size_t count = 0, room = 0;
   bool good = true;
-  int got = 0;
+  int got = pass_mark(file);
   double value;
-  while (good && (got = fscanf(file, "%lf%*[ ,\t\r\n]", &value)) == 1)
+  while (good && got == 1 && (got = fscanf(file, "%lf%*[ ,\t\r\n]", &value)) == 1)
     good = add_number(numbers, &count, &room, value);
   bool bad = got == 0 || ferror(file);
   fclose(file);

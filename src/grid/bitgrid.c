@@ -32,6 +32,17 @@ vxm_status vxm_space_check(const vxm_space *space, vxm_error *error) {
   return VXM_OK;
 }
 
+vxm_status vxm_space_check_sizes(const vxm_space *space, vxm_error *error) {
+  const double *s = space->voxel_size, least = fmin(s[0], fmin(s[1], s[2]));
+  if (least >= VXM_VOXEL_SIZE_MIN)
+    return VXM_OK;
+  return vxm_fail(
+      error, VXM_ERROR_RANGE,
+      "voxels of size %g are too small to be computed with; choose larger ones, or scale the model "
+      "up",
+      least);
+}
+
 uint64_t vxm_space_bytes(const vxm_space *space) {
   return ((uint64_t)space->dims[0] + 63) / 64 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2] * 8;
 }
@@ -116,7 +127,7 @@ const uint64_t *vxm_grid_words(const vxm_grid *grid) {
   return grid ? grid->words : NULL;
 }
 
-void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
+void vxm_grid_count_hash(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
   vxm_window window = vxm_window_of_grid(grid);
   vxm_count_hash sum = vxm_count_hash_start(&grid->space);
   vxm_count_hash_add(&sum, grid->context, &window, NULL);
@@ -128,7 +139,7 @@ int64_t vxm_grid_count(const vxm_grid *grid) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (grid)
-    vxm_grid_sum(grid, &count, &hash);
+    vxm_grid_count_hash(grid, &count, &hash);
   return count;
 }
 
@@ -136,7 +147,7 @@ uint64_t vxm_grid_hash(const vxm_grid *grid) {
   int64_t count = 0;
   uint64_t hash = 0;
   if (grid)
-    vxm_grid_sum(grid, &count, &hash);
+    vxm_grid_count_hash(grid, &count, &hash);
   return hash;
 }
 

@@ -21,8 +21,14 @@ struct vxm_grid {
   vxm_warnings warnings;
 };
 
-/** Checks dims (1 to VXM_DIM_MAX, ), finite origin, positive finite voxel size. */
+/** Smaller voxels have no inverse that can be multiplied by the steps of a lattice, at most 2^16. */
+#define VXM_VOXEL_SIZE_MIN 0x1p-1007
+
+/** Checks dims (1 to VXM_DIM_MAX), finite origin, positive finite voxel size. */
 vxm_status vxm_space_check(const vxm_space *space, vxm_error *error);
+/** Checks that meshes can be made into voxels as small as those of a space that has been checked. @return
+ * VXM_OK, VXM_ERROR_RANGE */
+vxm_status vxm_space_check_sizes(const vxm_space *space, vxm_error *error);
 /** Bytes that a grid of this space takes. The space has been checked. */
 uint64_t vxm_space_bytes(const vxm_space *space);
 
@@ -30,7 +36,7 @@ uint64_t vxm_space_bytes(const vxm_space *space);
 vxm_status vxm_grid_add_confidence(vxm_grid *grid, vxm_error *error);
 
 /** vxm_grid_count and vxm_grid_hash in one go. */
-void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash);
+void vxm_grid_count_hash(const vxm_grid *grid, int64_t *count, uint64_t *hash);
 
 static inline uint64_t *vxm_grid_row(const vxm_grid *grid, int64_t j, int64_t k) {
   return grid->words + (size_t)k * grid->slice_words + (size_t)j * grid->row_words;

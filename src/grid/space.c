@@ -115,6 +115,13 @@ static void set_sizes(vxm_space *space, const request *r, double size) {
     space->voxel_size[a] = r->by_size ? r->sizes[a] : size;
 }
 
+/** Whether what is divided by a resolution is large enough for it. */
+static vxm_status check_divided(const request *r, double size, const char *text, vxm_error *error) {
+  if (r->by_size || size >= VXM_VOXEL_SIZE_MIN)
+    return VXM_OK;
+  return vxm_fail(error, VXM_ERROR_RANGE, "%s", text);
+}
+
 /** Cells that cover a box from its minimum corner on; three numbers divide each side exactly. */
 static vxm_status cover_bounds(vxm_space *out, const box *b, const request *r, vxm_error *error) {
   for (int a = 0; a < 3; a++)
@@ -129,6 +136,11 @@ static vxm_status cover_bounds(vxm_space *out, const box *b, const request *r, v
     out->dims[a] =
         !r->by_size && !r->one_number ? r->voxels[a] : voxels_for(extent(b, a), out->voxel_size[a]);
     out->origin[a] = b->low[a];
+    vxm_status status = check_divided(
+        r, out->voxel_size[a],
+        "the bounds are too small to be divided into voxels; scale them and the model up", error);
+    if (status != VXM_OK)
+      return status;
   }
   return vxm_space_check(out, error);
 }
@@ -148,9 +160,10 @@ static vxm_status fit_model(vxm_space *out, const box *b, const request *r, cons
   set_sizes(out, r, fitted_size(b, r, o->fit));
   for (int a = 0; a < 3; a++) {
     double size = out->voxel_size[a];
-    if (!(size > 0) || !isfinite(size))
-      return vxm_fail(error, VXM_ERROR_RANGE,
-                      "voxels of size %g are beyond what can be computed; scale the model", size);
+    vxm_status status =
+        check_divided(r, size, "the model is too small to be divided into voxels; scale it up", error);
+    if (status != VXM_OK)
+      return status;
     double side = o->fit == VXM_FIT_TIGHT    ? extent(b, a)
                   : o->fit == VXM_FIT_SPHERE ? diagonal(b)
                                              : longest(b);
@@ -165,8 +178,8 @@ static vxm_status fit_model(vxm_space *out, const box *b, const request *r, cons
   return vxm_space_check(out, error);
 }
 
-vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,
-                            vxm_error *error) {
+static vxm_status choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,
+                         vxm_error *error) {
   if (options->like) {
     *out = *options->like;
     return vxm_space_check(out, error);
@@ -199,4 +212,10 @@ vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_spac
   if (!isfinite(diagonal(&b)))
     return vxm_fail(error, VXM_ERROR_RANGE, "the model is larger than the largest number; scale it down");
   return fit_model(out, &b, &wanted, options, error);
+}
+
+vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,
+                            vxm_error *error) {
+  vxm_status status = choose(out, soup, options, error);
+  return status == VXM_OK ? vxm_space_check_sizes(out, error) : status;
 }

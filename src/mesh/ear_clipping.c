@@ -9,12 +9,12 @@
 
 static void make_leaf(const vxm_ring *r, size_t leaf) {
   const vxm_triangulator *tri = r->tri;
-  size_t node = r->leaves + leaf, begin = leaf * VXM_ORDER_LEAF, end = begin + VXM_ORDER_LEAF;
+  size_t node = r->leaves + leaf, begin = leaf * VXM_SPATIAL_SORT_LEAF, end = begin + VXM_SPATIAL_SORT_LEAF;
   double(*box)[2] = tri->boxes[node];
   tri->counts[node] = 0;
   for (size_t s = begin; s < end && s < r->n; s++) {
-    const double *p = tri->plane[tri->spots[s].index];
-    tri->places[tri->spots[s].index] = (uint32_t)s;
+    const double *p = tri->plane[tri->points[s].index];
+    tri->places[tri->points[s].index] = (uint32_t)s;
     for (int c = 0; c < 2; c++) {
       box[0][c] = s == begin ? p[c] : fmin(box[0][c], p[c]);
       box[1][c] = s == begin ? p[c] : fmax(box[1][c], p[c]);
@@ -26,9 +26,9 @@ static void make_leaf(const vxm_ring *r, size_t leaf) {
 void vxm_ring_make_tree(vxm_ring *r) {
   vxm_triangulator *tri = r->tri;
   for (size_t i = 0; i < r->n; i++)
-    tri->spots[i] = (vxm_spatial_point){{(float)tri->plane[i][0], (float)tri->plane[i][1], 0}, (uint32_t)i};
-  (void)vxm_spatial_sort(tri->spots, r->n, NULL, NULL); /* as it cannot be cancelled */
-  for (r->leaves = 1; r->leaves * VXM_ORDER_LEAF < r->n;)
+    tri->points[i] = (vxm_spatial_point){{(float)tri->plane[i][0], (float)tri->plane[i][1], 0}, (uint32_t)i};
+  (void)vxm_spatial_sort(tri->points, r->n, NULL, NULL); /* as it cannot be cancelled */
+  for (r->leaves = 1; r->leaves * VXM_SPATIAL_SORT_LEAF < r->n;)
     r->leaves *= 2;
   for (size_t leaf = 0; leaf < r->leaves; leaf++)
     make_leaf(r, leaf);
@@ -46,7 +46,7 @@ void vxm_ring_make_tree(vxm_ring *r) {
 
 void vxm_ring_drop(const vxm_ring *r, uint32_t i) {
   if (r->leaves)
-    for (size_t node = r->leaves + r->tri->places[i] / VXM_ORDER_LEAF; node > 0; node /= 2)
+    for (size_t node = r->leaves + r->tri->places[i] / VXM_SPATIAL_SORT_LEAF; node > 0; node /= 2)
       r->tri->counts[node]--;
 }
 
@@ -124,9 +124,9 @@ static bool is_free_in(vxm_ring *r, const vxm_ear *e, size_t node) {
     return true;
   if (node < r->leaves)
     return is_free_in(r, e, 2 * node) && is_free_in(r, e, 2 * node + 1);
-  size_t begin = (node - r->leaves) * VXM_ORDER_LEAF, end = begin + VXM_ORDER_LEAF;
+  size_t begin = (node - r->leaves) * VXM_SPATIAL_SORT_LEAF, end = begin + VXM_SPATIAL_SORT_LEAF;
   for (size_t s = begin; s < end && s < r->n; s++)
-    if (tri->after[tri->spots[s].index] != VXM_RING_CLIPPED && forbids(r, e, tri->spots[s].index))
+    if (tri->after[tri->points[s].index] != VXM_RING_CLIPPED && forbids(r, e, tri->points[s].index))
       return false;
   return true;
 }

@@ -8,7 +8,7 @@
 
 enum {
   RANGES = 64,     /**< that are sorted at the same time, at most */
-  SHARE_MIN = 4096 /**< spots in a range that is worth a thread of its own */
+  SHARE_MIN = 4096 /**< points in a range that is worth a thread of its own */
 };
 
 typedef struct range {
@@ -16,7 +16,7 @@ typedef struct range {
 } range;
 
 typedef struct sorter {
-  vxm_spatial_point *spots;
+  vxm_spatial_point *points;
   range ranges[RANGES];
   size_t count;
   vxm_context *context;
@@ -28,14 +28,14 @@ typedef struct sorter {
 typedef float four __attribute__((vector_size(16)));
 typedef int32_t four_int __attribute__((vector_size(16)));
 
-static int widest_axis(const vxm_spatial_point *spots, range r) {
+static int widest_axis(const vxm_spatial_point *points, range r) {
   /* An vxm_spatial_point as a vector; its number takes part, and is not looked at. */
   four low, high;
-  memcpy(&low, &spots[r.begin], sizeof low);
+  memcpy(&low, &points[r.begin], sizeof low);
   high = low;
   for (size_t i = r.begin + 1; i < r.end; i++) {
     four x;
-    memcpy(&x, &spots[i], sizeof x);
+    memcpy(&x, &points[i], sizeof x);
     four_int is_below = x<low, is_above = x> high;
     low = (four)((is_below & (four_int)x) | (~is_below & (four_int)low));
     high = (four)((is_above & (four_int)x) | (~is_above & (four_int)high));
@@ -47,14 +47,14 @@ static int widest_axis(const vxm_spatial_point *spots, range r) {
   return widest;
 }
 
-/** Moves the spots below a bound, or up to it, to the front; returns where the others begin. */
-static size_t move_below(vxm_spatial_point *spots, range r, int axis, float bound, bool with_bound) {
+/** Moves the points below a bound, or up to it, to the front; returns where the others begin. */
+static size_t move_below(vxm_spatial_point *points, range r, int axis, float bound, bool with_bound) {
   size_t end = r.begin;
   for (size_t i = r.begin; i < r.end; i++) {
-    vxm_spatial_point at = spots[i];
+    vxm_spatial_point at = points[i];
     bool is_below = with_bound ? at.at[axis] <= bound : at.at[axis] < bound;
-    spots[i] = spots[end];
-    spots[end] = at;
+    points[i] = points[end];
+    points[end] = at;
     end += is_below;
   }
   return end;
@@ -65,12 +65,12 @@ static size_t move_below(vxm_spatial_point *spots, range r, int axis, float boun
  * so that what is sought ends up on the smaller side. The sample is taken by chance, as any regular one could
  * be led astray by the order of a file.
  */
-static float guess_bound(const vxm_spatial_point *spots, range r, int axis, double part, vxm_rng *rng) {
+static float guess_bound(const vxm_spatial_point *points, range r, int axis, double part, vxm_rng *rng) {
   enum { MOST = 33 };
   float sample[MOST];
   int samples = r.end - r.begin > 1024 ? MOST : r.end - r.begin > 64 ? 9 : 3;
   for (int n = 0; n < samples; n++) {
-    float x = spots[r.begin + vxm_rng_below(rng, r.end - r.begin)].at[axis];
+    float x = points[r.begin + vxm_rng_below(rng, r.end - r.begin)].at[axis];
     int place = n;
     for (; place > 0 && sample[place - 1] > x; place--)
       sample[place] = sample[place - 1];
@@ -81,17 +81,17 @@ static float guess_bound(const vxm_spatial_point *spots, range r, int axis, doub
   return sample[rank];
 }
 
-/** Moves the lesser spots before place `half`. */
-static void halve(vxm_spatial_point *spots, range r, size_t half, int axis, vxm_rng *rng) {
+/** Moves the lesser points before place `half`. */
+static void halve(vxm_spatial_point *points, range r, size_t half, int axis, vxm_rng *rng) {
   while (r.begin < half && half < r.end) {
-    float bound = guess_bound(spots, r, axis, (double)(half - r.begin) / (double)(r.end - r.begin), rng);
-    size_t end = move_below(spots, r, axis, bound, false);
+    float bound = guess_bound(points, r, axis, (double)(half - r.begin) / (double)(r.end - r.begin), rng);
+    size_t end = move_below(points, r, axis, bound, false);
     if (end > half) {
       r.end = end;
       continue;
     }
-    r.begin = end; /* what is left has spots at the bound, which may be many */
-    end = move_below(spots, r, axis, bound, true);
+    r.begin = end; /* what is left has points at the bound, which may be many */
+    end = move_below(points, r, axis, bound, true);
     if (end >= half)
       return;
     r.begin = end;
@@ -101,13 +101,13 @@ static void halve(vxm_spatial_point *spots, range r, size_t half, int axis, vxm_
 /* ---- Ranges ---- */
 
 /** Cuts a range behind the greatest run that may be a node; returns what lies behind. */
-static range split(vxm_spatial_point *spots, range *r) {
-  size_t run = VXM_ORDER_LEAF;
+static range split(vxm_spatial_point *points, range *r) {
+  size_t run = VXM_SPATIAL_SORT_LEAF;
   while (2 * run < r->end - r->begin)
     run *= 2;
   vxm_rng rng = {r->begin};
   range rest = {r->begin + run, r->end};
-  halve(spots, *r, rest.begin, widest_axis(spots, *r), &rng);
+  halve(points, *r, rest.begin, widest_axis(points, *r), &rng);
   r->end = rest.begin;
   return rest;
 }
@@ -126,8 +126,8 @@ static void sort_range(size_t task, int worker, void *payload) {
     range *top = &stack[depth - 1];
     if (top->end - top->begin > SHARE_MIN && !goes_on(s))
       return;
-    if (top->end - top->begin > VXM_ORDER_LEAF)
-      stack[depth++] = split(s->spots, top);
+    if (top->end - top->begin > VXM_SPATIAL_SORT_LEAF)
+      stack[depth++] = split(s->points, top);
     else
       depth--;
   }
@@ -137,11 +137,11 @@ static void split_range(size_t task, int worker, void *payload) {
   (void)worker;
   sorter *s = payload;
   range *r = &s->ranges[task];
-  s->ranges[s->count + task] = r->end - r->begin > SHARE_MIN ? split(s->spots, r) : (range){r->end, r->end};
+  s->ranges[s->count + task] = r->end - r->begin > SHARE_MIN ? split(s->points, r) : (range){r->end, r->end};
 }
 
-vxm_status vxm_spatial_sort(vxm_spatial_point *spots, size_t count, vxm_context *context, vxm_error *error) {
-  sorter s = {.spots = spots, .ranges = {{0, count}}, .count = 1, .context = context};
+vxm_status vxm_spatial_sort(vxm_spatial_point *points, size_t count, vxm_context *context, vxm_error *error) {
+  sorter s = {.points = points, .ranges = {{0, count}}, .count = 1, .context = context};
   size_t wanted = context ? 4 * (size_t)vxm_context_threads(context) : 1;
   if (wanted <= 4) {
     sort_range(0, 0, &s);

@@ -20,7 +20,7 @@ void vxm_triangulator_close(vxm_triangulator *tri) {
   vxm_free(tri->context, tri->plane);
   vxm_free(tri->context, tri->before);
   vxm_free(tri->context, tri->after);
-  vxm_free(tri->context, tri->spots);
+  vxm_free(tri->context, tri->points);
   vxm_free(tri->context, tri->places);
   vxm_free(tri->context, tri->boxes);
   vxm_free(tri->context, tri->counts);
@@ -30,7 +30,8 @@ void vxm_triangulator_close(vxm_triangulator *tri) {
   vxm_free(tri->context, tri->triangles);
 }
 
-/** Each with room for a capacity that is a multiple of VXM_ORDER_LEAF: less than half as many nodes. */
+/** Each with room for a capacity that is a multiple of VXM_SPATIAL_SORT_LEAF: less than half as many nodes.
+ */
 static vxm_status reserve(vxm_triangulator *tri, size_t n, vxm_error *error) {
   if (n <= tri->capacity)
     return VXM_OK;
@@ -40,7 +41,7 @@ static vxm_status reserve(vxm_triangulator *tri, size_t n, vxm_error *error) {
   } blocks[] = {{(void **)&tri->plane, sizeof *tri->plane},
                 {(void **)&tri->before, sizeof *tri->before},
                 {(void **)&tri->after, sizeof *tri->after},
-                {(void **)&tri->spots, sizeof *tri->spots},
+                {(void **)&tri->points, sizeof *tri->points},
                 {(void **)&tri->places, sizeof *tri->places},
                 {(void **)&tri->boxes, sizeof *tri->boxes},
                 {(void **)&tri->counts, sizeof *tri->counts},

@@ -13,15 +13,15 @@ extern "C" {
 /** Room for the largest polygon met so far. */
 typedef struct vxm_triangulator {
   vxm_context *context;
-  double (*plane)[2];       /**< the corners, with one coordinate left out */
-  uint32_t *before, *after; /**< the ring of corners left */
-  vxm_spatial_point *spots; /**< the corners in the order of a tree of boxes */
-  uint32_t *places;         /**< where in it they are */
-  double (*boxes)[2][2];    /**< of its nodes: child n has the children 2 n and 2 n + 1 */
-  uint32_t *counts;         /**< of corners left in each node */
-  uint32_t *heap, *waits;   /**< corners to be tried, and where in the heap they are */
-  double *cuts;             /**< how long a cut it takes to cut them off, squared */
-  uint32_t *triangles;      /**< three corners each */
+  double (*plane)[2];        /**< the corners, with one coordinate left out */
+  uint32_t *before, *after;  /**< the ring of corners left */
+  vxm_spatial_point *points; /**< the corners in the order of a tree of boxes */
+  uint32_t *places;          /**< where in it they are */
+  double (*boxes)[2][2];     /**< of its nodes: child n has the children 2 n and 2 n + 1 */
+  uint32_t *counts;          /**< of corners left in each node */
+  uint32_t *heap, *waits;    /**< corners to be tried, and where in the heap they are */
+  double *cuts;              /**< how long a cut it takes to cut them off, squared */
+  uint32_t *triangles;       /**< three corners each */
   size_t capacity;
   size_t looks;      /**< at corners and boxes, for all polygons together */
   size_t looks_left; /**< for those that are found to cross themselves */

@@ -65,7 +65,7 @@ VXM_API vxm_status vxm_carver_create(vxm_carver **out, vxm_grid *grid, const vxm
                                      vxm_error *error);
 /**
  * Makes a carver of an octree, which stays as it is: what the tool comes to is held in cubes of 64 x 64 x 64
- * voxels, so that memory follows the way of the tool.
+ * voxels, so that memory follows the path of the tool.
  *
  * @param sparse must outlive the carver
  * @return as vxm_carver_create
@@ -76,7 +76,7 @@ VXM_API vxm_status vxm_carver_create_sparse(vxm_carver **out, const vxm_sparse *
 VXM_API void vxm_carver_destroy(vxm_carver *carver);
 
 /**
- * Puts the tool somewhere, without a way to there: the first step, and after each that is to cut nothing on
+ * Puts the tool somewhere, without a path to there: the first step, and after each that is to cut nothing on
  * its way. The voxels of its solid are removed, those that vxm_voxelize sets with VXM_THIN_DROP.
  *
  * @param report may be NULL

@@ -42,15 +42,15 @@ typedef enum vxm_voxel_format {
  * vertices are displaced, and it is moved.
  */
 typedef struct vxm_sampler_options {
-  size_t size;           /**< as the initializer sets it */
-  int64_t resolution;    /**< voxels along each axis; 0 = 64 */
-  int64_t pad;           /**< voxels kept free on each side of the model before it is moved */
-  uint64_t seed;         /**< of all that is drawn */
-  vxm_rotation rotation; /**< how variants are rotated */
-  double axis[3];        /**< with VXM_ROTATION_AXIS; all 0 = z */
-  const double
-      *rotations; /**< with VXM_ROTATION_LIST: rotation_count x 3 x 3, row after row; they are copied */
-  int64_t rotation_count; /**< of the list */
+  size_t size;             /**< as the initializer sets it */
+  int64_t resolution;      /**< voxels along each axis; 0 = 64 */
+  int64_t pad;             /**< voxels kept free on each side of the model before it is moved */
+  uint64_t seed;           /**< of all that is drawn */
+  vxm_rotation rotation;   /**< how variants are rotated */
+  double axis[3];          /**< with VXM_ROTATION_AXIS; all 0 = z */
+  const double *rotations; /**< with VXM_ROTATION_LIST: rotation_count x 3 x 3, row after row, none that
+                              mirrors; they are copied */
+  int64_t rotation_count;  /**< of the list */
   double scale; /**< each axis is scaled by a factor of its own, uniform in 1 - scale to 1 + scale; below 1 */
   vxm_displacement displacement; /**< how vertices are displaced */
   double displace;               /**< as a fraction of the width of the grid; 0 = vertices stay */

@@ -109,7 +109,7 @@ typedef struct vxm_space_options {
  * Chooses a voxel space for a mesh.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if the mesh has no extent; VXM_ERROR_RANGE beyond 2^20
- * voxels along an axis
+ * voxels along an axis, or for voxels below 2^-1007, about 7e-304
  */
 VXM_API vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm_space_options *options,
                                  vxm_error *error);
@@ -184,8 +184,8 @@ typedef struct vxm_voxelize_report {
  * @param space       where the voxels lie; NULL = defaults
  * @param options     how; NULL = defaults
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners;
- *         VXM_ERROR_RANGE if a vertex lies too far outside the grid; VXM_ERROR_MEMORY,
- *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ *         VXM_ERROR_RANGE if a vertex lies too far outside the grid, or voxels are too small, as
+ * vxm_space_fit says; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
  * give the same bits, except where a part cuts through itself, which the winding number fills, and the

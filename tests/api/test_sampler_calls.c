@@ -98,6 +98,10 @@ static void wrong_arguments_are_refused(void **state) {
   options.rotations = shear;
   options.rotation_count = 1;
   refuse(&options, VXM_ERROR_ARGUMENT);
+  static const double mirrored[18] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1};
+  options.rotations = mirrored;
+  options.rotation_count = 2;
+  refuse(&options, VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_sampler_create(NULL, NULL, NULL, NULL), VXM_ERROR_ARGUMENT);
 
   vxm_mesh *mesh = mesh_of_model(NULL, "cube"), *empty;

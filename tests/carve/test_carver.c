@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Carvers against the plain way: the tool's signed distance at many places along its way, by solid angles and
- * by the nearest points of its triangles. What is clearly within at one of them is cut; what is clearly
+ * Carvers against the plain way: the tool's signed distance at many places along its path, by solid angles
+ * and by the nearest points of its triangles. What is clearly within at one of them is cut; what is clearly
  * outside of all is not.
  */
 #include <setjmp.h>
@@ -121,10 +121,10 @@ static double signed_distance(const tool *t, const double point[3]) {
   return sum > 2 * pi ? -least : least;
 }
 
-/** A way: from one place to another, while the tool turns by an angle about an axis. */
-typedef struct way {
+/** A motion: from one place to another, while the tool turns by an angle about an axis. */
+typedef struct motion {
   double from[3], to[3], first_axis[3], first_angle, axis[3], angle;
-} way;
+} motion;
 
 static void rotation_about(double m[9], const double axis[3], double angle_) {
   double c = cos(angle_), s = sin(angle_), l = sqrt(dot(axis, axis)),
@@ -136,7 +136,7 @@ static void rotation_about(double m[9], const double axis[3], double angle_) {
   m[3] += s * u[2], m[6] -= s * u[1], m[7] += s * u[0];
 }
 
-static void pose_on(double pose[12], const way *w, double part) {
+static void pose_on(double pose[12], const motion *w, double part) {
   double first[9], more[9];
   rotation_about(first, w->first_axis, w->first_angle);
   rotation_about(more, w->axis, part * w->angle);
@@ -148,7 +148,7 @@ static void pose_on(double pose[12], const way *w, double part) {
   }
 }
 
-/** The least signed distance of a point on the way. */
+/** The least signed distance of a point during the motion. */
 static double least_distance(const tool *t, double poses[][12], const double at[3]) {
   double least = INFINITY;
   for (int s = 0; s <= PLACES; s++) {
@@ -187,7 +187,7 @@ static void move(vxm_carver *carver, const vxm_grid *grid, const double pose[12]
 static const vxm_space cube = {{SIDE, SIDE, SIDE}, {-1.5, 2, 0.25}, {0.5, 0.5, 0.5}};
 static const vxm_space oblong = {{SIDE + 3, SIDE, 2 * SIDE}, {-1.5, 2, 0.25}, {0.4, 0.5, 0.25}};
 
-static void compare_to_plain_way(const tool *t, const way *w, const vxm_space *space) {
+static void compare_to_plain(const tool *t, const motion *w, const vxm_space *space) {
   vxm_grid *grid = full_grid(NULL, space);
   vxm_mesh *mesh = mesh_of(NULL, t);
   vxm_carver *carver = NULL;
@@ -223,29 +223,29 @@ static void compare_to_plain_way(const tool *t, const way *w, const vxm_space *s
 
 static void straight_ways_are_covered(void **state) {
   (void)state;
-  static const way ways[] = {
+  static const motion motions[] = {
       {{-0.03, 3.01, 1.13}, {3.4, 6.77, 5.2}, {1, 2, 3}, 0.7, {0, 0, 1}, 0},
       {{1.9, 4.1, 3.3}, {1.9, 4.1, 1.7}, {0, 0, 1}, 0, {0, 0, 1}, 0},
       {{-9.1, -2.2, 2.9}, {15.3, 14.2, 3.1}, {3, -1, 1}, 2.1, {0, 0, 1}, 0},
   };
-  for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
-    compare_to_plain_way(&box, &ways[w], &cube);
-    compare_to_plain_way(&corner, &ways[w], &oblong);
-    compare_to_plain_way(&angle, &ways[w], &cube);
+  for (size_t w = 0; w < sizeof motions / sizeof *motions; w++) {
+    compare_to_plain(&box, &motions[w], &cube);
+    compare_to_plain(&corner, &motions[w], &oblong);
+    compare_to_plain(&angle, &motions[w], &cube);
   }
 }
 
 static void turns_are_covered(void **state) {
   (void)state;
-  static const way ways[] = {
+  static const motion motions[] = {
       {{1.1, 4.7, 3.2}, {1.1, 4.7, 3.2}, {1, 2, 3}, 0.7, {0.1, 0.2, 1}, 2.5},
       {{-0.03, 3.01, 1.13}, {2.4, 5.77, 4.2}, {1, 0, 0}, 0, {1, 0.3, -0.2}, -1.4},
       {{0.4, 4.4, 2.5}, {2.4, 4.4, 2.5}, {0, 0, 1}, 0, {0, 0, 1}, 0.01},
   };
-  for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
-    compare_to_plain_way(&box, &ways[w], &oblong);
-    compare_to_plain_way(&corner, &ways[w], &cube);
-    compare_to_plain_way(&angle, &ways[w], &cube);
+  for (size_t w = 0; w < sizeof motions / sizeof *motions; w++) {
+    compare_to_plain(&box, &motions[w], &oblong);
+    compare_to_plain(&corner, &motions[w], &cube);
+    compare_to_plain(&angle, &motions[w], &cube);
   }
 }
 
@@ -277,9 +277,9 @@ static void faces_through_centres_count_once(void **state) {
   vxm_grid_destroy(grid);
 }
 
-/** Goes a way of some steps, each of which turns and moves. */
+/** Makes a motion of some steps, each of which turns and moves. */
 static void go(vxm_carver *carver, double part) {
-  way w = {{-1, 1, 0}, {20, 30, 40}, {1, 1, 0}, 0.3, {0.2, 1, 0.1}, 4};
+  motion w = {{-1, 1, 0}, {20, 30, 40}, {1, 1, 0}, 0.3, {0.2, 1, 0.1}, 4};
   for (int s = 0; s <= 14; s++) {
     double pose[12];
     pose_on(pose, &w, part + (s % 2 ? s - 1 : s) / 14.0);
@@ -388,6 +388,13 @@ static void what_cannot_be_is_refused(void **state) {
   vxm_mesh *other = mesh_of(NULL, &large);
   assert_int_equal(vxm_carver_create(&none, grid, other, NULL), VXM_ERROR_RANGE);
   assert_null(none);
+  static const vxm_space tiny = {{8, 8, 8}, {0, 0, 0}, {1e-310, 1e-310, 1e-310}};
+  vxm_grid *small;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_grid_create(&small, NULL, &tiny, NULL), VXM_OK);
+  assert_int_equal(vxm_carver_create(&none, small, other, &error), VXM_ERROR_RANGE);
+  assert_non_null(strstr(error.text, "too small to be computed with"));
+  vxm_grid_destroy(small);
   vxm_mesh_destroy(other);
   vxm_carver_destroy(carver);
   vxm_mesh_destroy(mesh);

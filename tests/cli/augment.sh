@@ -84,6 +84,8 @@ for option in '--rotate none' '--rotate x' '--rotate z' '--rotate 1,2,-2' '--rot
   '--mode surface' '--mode surface --surface shell6' '--thin drop --rotate x' '--thin 26 --rotate x' '--no-repair' '--weld off' '--model 7' '--keep-duplicates'; do
   run "voxmend augment in/l_prism.off -o - -n 4 -r 16 $option -q | tail -c +65 | cksum"
 done
+{ printf '\357\273\277'; cat turns.txt; } >marked.txt
+run "voxmend augment in/l_prism.off -o - -n 4 -r 16 --rotate marked.txt -q | tail -c +65 | cksum"
 
 say "# who makes them: the same bits"
 run 'voxmend augment in/l_prism.off -o - -n 24 $all -q --engine cpu | cmp - a.bin && echo equal'
@@ -106,7 +108,9 @@ done
 printf '1 0 0 0 1 0 0 0\n' >short.txt
 printf '1 0 0 0 1 0 0 0 one\n' >word.txt
 printf '1 0.5 0 0 1 0 0 0 1\n' >shear.txt
-run 'for f in short word shear; do voxmend augment in/l_prism.off -o x --rotate $f.txt; done'
+printf '1 0 0 0 1 0 0 0 -1\n' >mirror.txt
+printf '\357\273X1 0 0 0 1 0 0 0 1\n' >odd.txt
+run 'for f in short word shear mirror odd; do voxmend augment in/l_prism.off -o x --rotate $f.txt; done'
 run 'voxmend augment missing.off -o x'
 run 'voxmend augment in/l_prism.off -o - -n 3 -r 16 -q >/dev/full'
 run 'voxmend augment in/l_prism.off -o x -n 3 --memlimit 20K'

@@ -80,7 +80,7 @@ static void make_group(vxm_context *owner) {
   }
 }
 
-static void drop_team(void) {
+static void drop_group(void) {
   vxm_engine_destroy(engine);
   engine = NULL;
 }
@@ -142,7 +142,7 @@ static void test_the_same(void **state) {
   for (int m = 0; m < group()->count; m++)
     assert_true(watched[m].calls > 0);
   assert_int_equal(vxm_engine_describe(engine)->lost_devices, 0);
-  drop_team();
+  drop_group();
 }
 
 /** Eight slices are at least as many as each of the pieces has. */
@@ -159,7 +159,7 @@ static void test_by_speed(void **state) {
     others += watched[m].slices;
   assert_int_equal(others + watched[0].slices, 33);
   assert_true(watched[0].slices * 2 < others);
-  drop_team();
+  drop_group();
 }
 
 /* ---- Failures ---- */
@@ -187,7 +187,7 @@ static void test_one_fails(void **state) {
       if (is_lost)
         assert_int_equal(watched[1].calls, at); /* and it is asked no more */
       at -= votes;
-      drop_team();
+      drop_group();
     }
 }
 
@@ -221,7 +221,7 @@ static void test_all_fail(void **state) {
   assert_int_equal(voxelize(context), VXM_ERROR_UNAVAILABLE);
   assert_int_equal(vxm_engine_describe(engine)->devices, 0);
   assert_int_equal(voxelize(context), VXM_ERROR_UNAVAILABLE);
-  drop_team();
+  drop_group();
 }
 
 /** Work that is more than any can hold is refused, and less of it is done afterwards. */
@@ -236,7 +236,7 @@ static void test_too_large(void **state) {
   assert_int_equal(vxm_engine_describe(engine)->devices, group()->count);
   assert_int_equal(vxm_engine_describe(engine)->lost_devices, 0);
   assert_int_equal(voxelize(context), VXM_OK);
-  drop_team();
+  drop_group();
 }
 
 static int stop(const char *phase, double fraction, void *payload) {
@@ -263,7 +263,7 @@ static void test_limits(void **state) {
   leave_memory(owner, 20000);
   assert_int_equal(voxelize(owner), VXM_ERROR_MEMORY_LIMIT);
   leave_memory(owner, SIZE_MAX);
-  drop_team();
+  drop_group();
   assert_int_equal(memory_used(owner), used);
   vxm_context_destroy(owner);
 }
@@ -317,7 +317,7 @@ static void test_variants(void **state) {
   watched[1].with = VXM_ERROR_UNAVAILABLE;
   make_variants(out[1], BYTES, engine, COUNT);
   assert_memory_equal(out[0], out[1], COUNT * BYTES);
-  drop_team();
+  drop_group();
   free(out[0]);
   free(out[1]);
 }
@@ -354,7 +354,7 @@ static void test_unwritable_files(void **state) {
   free(before);
   vxm_sampler_destroy(sampler);
   vxm_soup_destroy(box);
-  drop_team();
+  drop_group();
 }
 
 /* ---- Names ---- */
@@ -389,7 +389,7 @@ int main(void) {
   if (status != 0)
     return status;
   bool are_several = vxm_multi_device_of(engine) != NULL;
-  drop_team();
+  drop_group();
   if (!are_several) {
     fprintf(stderr, "skipped: " ENGINE " is one device\n");
     return 77;

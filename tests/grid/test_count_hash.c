@@ -90,7 +90,7 @@ static void test_layouts_and_windows(void **state) {
     vxm_grid *grid = new_grid(contexts[round % 3], unit_space(side[0], side[1], side[2]));
     fill_random(grid, &rng, round % KINDS);
     vxm_count_hash expected = plain_sum(grid), whole;
-    vxm_grid_sum(grid, &whole.count, &whole.hash);
+    vxm_grid_count_hash(grid, &whole.count, &whole.hash);
     assert_same(whole, expected);
     for (int l = 0; l < 6; l++)
       assert_same(sum_in_windows(grid, layouts[l], contexts[(round + l) % 3], &rng), expected);

@@ -211,11 +211,92 @@ static void test_nothing_to_fit(void **state) {
   vxm_mesh_destroy(point);
 }
 
+/** A triangle of that width in the plane z = 0. */
+static vxm_mesh *mesh_of_size(double size) {
+  const double vertices[] = {0, 0, 0, size, 0, 0, 0, size, 0};
+  vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
+  arrays.vertices = vertices;
+  arrays.vertex_count = 3;
+  arrays.indices = (int64_t[]){0, 1, 2};
+  arrays.index_count = 3;
+  arrays.face_count = 1;
+  vxm_mesh *out;
+  assert_int_equal(vxm_mesh_create(&out, NULL, &arrays, NULL), VXM_OK);
+  return out;
+}
+
+static void assert_told(const vxm_mesh *of, const vxm_space_options *options, const char *words) {
+  vxm_space space;
+  vxm_grid *grid;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_space_fit(&space, of, options, &error), VXM_ERROR_RANGE);
+  if (!strstr(error.text, words))
+    fail_msg("%s", error.text);
+  error = (vxm_error)VXM_ERROR_INIT;
+  assert_int_equal(vxm_voxelize(&grid, NULL, of, options, NULL, &error), VXM_ERROR_RANGE);
+  assert_non_null(strstr(error.text, words));
+}
+
+/** Voxels of which no lattice can be made are told as such; those just above are made. */
+static void test_too_small(void **state) {
+  (void)state;
+  static const double sizes[] = {0x1p-1074, 1e-310, 0x1p-1004 - 0x1p-1056};
+  vxm_space_options options = VXM_SPACE_OPTIONS_INIT;
+  options.resolution[0] = 8;
+  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+    vxm_mesh *small = mesh_of_size(sizes[s]);
+    for (int fit = VXM_FIT_CUBE; fit <= VXM_FIT_TIGHT; fit++) {
+      options.fit = (vxm_fit)fit;
+      assert_told(small, &options, "the model is too small to be divided into voxels");
+    }
+    vxm_mesh_destroy(small);
+  }
+  options.fit = VXM_FIT_CUBE;
+  vxm_mesh *least = mesh_of_size(0x1p-1004);
+  vxm_voxelize_options surface = VXM_VOXELIZE_OPTIONS_INIT;
+  surface.mode = VXM_MODE_SURFACE;
+  vxm_grid *grid;
+  assert_int_equal(vxm_voxelize(&grid, NULL, least, &options, &surface, NULL), VXM_OK);
+  assert_true(vxm_grid_count(grid) > 28);
+  vxm_grid_destroy(grid);
+
+  vxm_space_options given = VXM_SPACE_OPTIONS_INIT;
+  given.voxel_size = 0x1p-1008;
+  assert_told(least, &given, "too small to be computed with");
+  given.voxel_size = 0;
+  const vxm_space like = {{8, 8, 8}, {0, 0, 0}, {1, 0x1p-1074, 1}};
+  given.like = &like;
+  assert_told(least, &given, "too small to be computed with");
+  given.like = NULL;
+  given.use_bounds = true;
+  given.resolution[0] = 8;
+  for (int a = 3; a < 6; a++)
+    given.bounds[a] = 1e-310;
+  assert_told(least, &given, "the bounds are too small");
+  for (int a = 3; a < 6; a++)
+    given.bounds[a] = 0x1p-1074;
+  assert_told(least, &given, "the bounds are too small");
+  given.resolution[1] = given.resolution[2] = 8;
+  assert_told(least, &given, "the bounds are too small");
+
+  vxm_model *model;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_model_create(&model, least, NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_grid_create(&grid, NULL, &like, NULL), VXM_OK); /* such a grid may be */
+  assert_int_equal(vxm_model_voxelize(grid, NULL, model, NULL, &error), VXM_ERROR_RANGE);
+  assert_non_null(strstr(error.text, "too small to be computed with"));
+  vxm_grid_destroy(grid);
+  vxm_model_destroy(model);
+  vxm_mesh_destroy(least);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cube),  cmocka_unit_test(test_three_sizes), cmocka_unit_test(test_three_numbers),
-      cmocka_unit_test(test_tight), cmocka_unit_test(test_sphere),      cmocka_unit_test(test_bounds),
-      cmocka_unit_test(test_like),  cmocka_unit_test(test_refusals),    cmocka_unit_test(test_nothing_to_fit),
+      cmocka_unit_test(test_cube),           cmocka_unit_test(test_three_sizes),
+      cmocka_unit_test(test_three_numbers),  cmocka_unit_test(test_tight),
+      cmocka_unit_test(test_sphere),         cmocka_unit_test(test_bounds),
+      cmocka_unit_test(test_like),           cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_nothing_to_fit), cmocka_unit_test(test_too_small),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -115,7 +115,8 @@ def strangers():
         assert [label["name"] for label in told["labels"]] == ["ä", "b"], told
     # Axes as others write them; what they are not is told. A place in parts.
     for said, order in (("ZYX", (2, 1, 0)), ("z, y, x", (2, 1, 0)), (["z", "x", "y"], (1, 2, 0)), (numpy.array([b"Y", b"X", b"Z"]), (1, 0, 2)),
-                        ("depth", None), ("z,y,y", None), (7, None), (["x"] * 50, None)):
+                        (["z", "y", "x", "c"], (2, 1, 0)),
+                        ("depth", None), ("z,y,y", None), ("zyc", None), ("zyxcc", None), ("czyx", None), (7, None), (["x"] * 50, None)):
         with h5py.File(path, "w") as file:
             file["voxels"] = values
             file["voxels"].attrs.update({"axes": said, "origin": [1, 2, 3.5], "voxel_size": 0.5})
@@ -138,6 +139,11 @@ def strangers():
             file["rgb"] = colors
         back, _ = convert("other.h5")
         assert (back[..., :channels] == colors).all() and (channels == 4 or (back[..., 3] == 255).all())
+        for axes in ("zyxc", "Z, Y, X, C", "zyx", ["z", "y", "x", "channel"]):
+            with h5py.File(path, "a") as file:
+                file["rgb"].attrs["axes"] = axes
+            back, said = convert("other.h5")
+            assert (back[..., :channels] == colors.transpose(2, 1, 0, 3)).all() and "\"axes\"" not in said, (axes, said)
     with h5py.File(path, "w") as file:
         file.create_dataset("x", (20, 30, 40), "f4", chunks=(5, 5, 5), fillvalue=2.5)
     assert (convert("other.h5")[0] == 2.5).all()

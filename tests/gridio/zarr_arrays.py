@@ -76,7 +76,7 @@ def places():
     array = create("p.zarr", values, (3, 4, 5), compressor=None)
     assert "no attributes \"origin\" and" in read("p.zarr")[1]
     # Axes as others write them; what they are not is told, and the names of xarray may be anything.
-    for said, order in (("zyx", (2, 1, 0)), ("Z, X, Y", (1, 2, 0)), (["z", "y", "x"], (2, 1, 0)), ("depth", None), (["x", "y", "y"], None),
+    for said, order in (("zyx", (2, 1, 0)), ("Z, X, Y", (1, 2, 0)), (["z", "y", "x"], (2, 1, 0)), ("zyxc", (2, 1, 0)), ("zyxcc", None), ("depth", None), (["x", "y", "y"], None),
                         (3, None)):
         for name in ("axes", "_ARRAY_DIMENSIONS"):
             array.attrs.put({name: said, "origin": [1, 2, 3], "voxel_size": 1})

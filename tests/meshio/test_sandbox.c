@@ -139,13 +139,13 @@ static void test_memory(void **state) {
   vxm_context_destroy(context);
 }
 
-typedef struct telling {
+typedef struct progress_log {
   int calls_left;
   double last;
-} telling;
+} progress_log;
 
 static int stop_later(const char *phase, double fraction, void *payload) {
-  telling *told = payload;
+  progress_log *told = payload;
   assert_string_equal(phase, "reading");
   told->last = fraction;
   return --told->calls_left < 0;
@@ -156,7 +156,7 @@ static void test_cancel(void **state) {
   static const char *const words[] = {"wait", "spin"};
   for (size_t w = 0; w < 2; w++)
     for (int calls = 0; calls < 4; calls += 3) {
-      telling told = {calls, 0};
+      progress_log told = {calls, 0};
       vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
       options.progress = stop_later;
       options.payload = &told;

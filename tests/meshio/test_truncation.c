@@ -158,7 +158,7 @@ static void make_binary_ply(file *f, const shape *s, int variant) {
 
 /* ---- The cuts ---- */
 
-static bool has_note(const vxm_soup *soup, const char *part) {
+static bool has_warning(const vxm_soup *soup, const char *part) {
   for (int n = 0; n < soup->warnings.count; n++)
     if (strstr(soup->warnings.text[n], part))
       return true;
@@ -188,7 +188,7 @@ static void check_cut(const file *f, const shape *s, const char *name, size_t si
     fail_msg("%s cut to %zu bytes has %zu whole faces, but is refused: %s", name, size, whole, error.text);
   if (status != VXM_OK)
     return;
-  bool told = has_note(soup, "may be cut off");
+  bool told = has_warning(soup, "may be cut off");
   for (size_t q = 0; q < soup->face_count && !f->vertex_last; q++)
     if (!is_face(soup, q, f, s) && !(told && q + 1 == soup->face_count))
       fail_msg("%s cut to %zu bytes has a wrong face %zu of %zu: \"%.*s\"", name, size, q, soup->face_count,

@@ -409,6 +409,9 @@ class Variants(unittest.TestCase):
         for wrong in ("w", [1, 2], numpy.ones((2, 3, 3)), numpy.zeros((0, 3, 3))):
             with self.assertRaises(ValueError):
                 voxmend.Sampler(16, rotate=wrong)
+        turns[1, 2, 2] = -1
+        with self.assertRaisesRegex(voxmend.ArgumentError, "matrix 1 .* mirror"):
+            voxmend.Sampler(16, rotate=turns)
 
     def test_wrong_arguments(self):
         sampler = self.make()

@@ -10,10 +10,12 @@ bool vxm_axes_parse(int axis[3], const char *text, size_t size) {
     int letter = text[t] | 0x20;
     if (text[t] == ',' || text[t] == ' ')
       continue;
-    if (count == 3 || letter < 'x' || letter > 'z')
+    bool is_known = count == 3 ? letter == 'c' : letter >= 'x' && letter <= 'z';
+    if (count == 4 || !is_known)
       return false;
-    found[count] = letter - 'x';
-    seen |= 1u << found[count++];
+    if (count < 3)
+      seen |= 1u << (found[count] = letter - 'x');
+    count++;
   }
   if (seen != 7)
     return false;

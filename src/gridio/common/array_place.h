@@ -9,10 +9,11 @@
 #include <stddef.h>
 
 /** What of it is there: bits. */
-enum { VXM_PLACE_ORIGIN = 1, VXM_PLACE_SIZE = 2, VXM_PLACE_WHOLE = 3 };
+enum { VXM_PLACE_ORIGIN = 1, VXM_PLACE_SIZE = 2 };
 
 /**
- * Takes x, y and z in any order, large or small, with or without commas and blanks between them.
+ * Takes x, y and z in any order, large or small, with or without commas and blanks between them, and c for
+ * the channels of colours behind them.
  *
  * @param[out] axis of the grid, for each of the array's; left as it is after false
  * @return false if that is not what the text has

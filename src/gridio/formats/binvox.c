@@ -224,7 +224,7 @@ static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, size_t data,
   return status;
 }
 
-static void add_notes(vxm_warnings *warnings, const header *h, const oddities *found) {
+static void add_warnings(vxm_warnings *warnings, const header *h, const oddities *found) {
   if (!h->has_translate)
     vxm_warn(warnings, "the header has no translate line: 0 0 0 is taken");
   if (!h->has_scale)
@@ -238,7 +238,7 @@ static void add_notes(vxm_warnings *warnings, const header *h, const oddities *f
     vxm_warn(warnings,
              "written by trimesh, which has its voxels scale / (dim - 1) apart and the centre of the first "
              "at translate: taken are scale / dim and its corner, as binvox has them; "
-             "VoxelGrid.from_trimesh keeps their place");
+             "in Python, VoxelGrid.from_trimesh keeps their place");
   if (found->odd)
     vxm_warn(warnings, "a lone byte behind the last run is ignored");
 }
@@ -277,7 +277,7 @@ static vxm_status read_binvox(vxm_grid **out, const vxm_input *input, vxm_bits_r
     vxm_grid_destroy(grid);
     return status;
   }
-  add_notes(&grid->warnings, &h, &found);
+  add_warnings(&grid->warnings, &h, &found);
   *out = grid;
   return VXM_OK;
 }
@@ -347,7 +347,7 @@ static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error 
     return status;
   }
   vxm_field_describe(field, &about);
-  add_notes(&field->warnings, &h, &found);
+  add_warnings(&field->warnings, &h, &found);
   return vxm_field_hand_over(out, field, vxm_progress(input->context, "reading", 1, error), error);
 }
 

@@ -152,10 +152,10 @@ static vxm_status load(json_t **out, int folder, const char *name, const char *p
 }
 
 /** Where a fault lies: ".zarray" of the folder. */
-typedef struct spot {
+typedef struct location {
   const char *path;
   const vxm_input *input;
-} spot;
+} location;
 
 #define FAIL(p, error, ...) \
   vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){(p)->path, 0, -1, -1}, __VA_ARGS__)
@@ -175,7 +175,7 @@ static bool read_dims(const json_t *root, const char *key, int64_t *out, int ran
   return true;
 }
 
-static vxm_status read_shape(vxm_zarr_array *out, const json_t *root, const spot *p, vxm_error *error) {
+static vxm_status read_shape(vxm_zarr_array *out, const json_t *root, const location *p, vxm_error *error) {
   size_t rank = json_array_size(json_object_get(root, "shape"));
   if (rank != 3 && rank != 4)
     return FAIL(p, error,
@@ -190,7 +190,7 @@ static vxm_status read_shape(vxm_zarr_array *out, const json_t *root, const spot
   return VXM_OK;
 }
 
-static vxm_status read_type(vxm_zarr_array *out, const json_t *root, const spot *p, vxm_error *error) {
+static vxm_status read_type(vxm_zarr_array *out, const json_t *root, const location *p, vxm_error *error) {
   const char *type = json_string_value(json_object_get(root, "dtype"));
   bool is_sized = type && strlen(type) == 3 && strchr("|<>", type[0]) && strchr("1248", type[2]);
   size_t size = is_sized ? (size_t)(type[2] - '0') : 0;
@@ -208,7 +208,7 @@ static vxm_status read_type(vxm_zarr_array *out, const json_t *root, const spot 
   return VXM_OK;
 }
 
-static vxm_status read_packing(vxm_zarr_array *out, const json_t *root, const spot *p, vxm_error *error) {
+static vxm_status read_packing(vxm_zarr_array *out, const json_t *root, const location *p, vxm_error *error) {
   const json_t *packed = json_object_get(root, "compressor"), *filters = json_object_get(root, "filters");
   const char *id = json_string_value(json_object_get(packed, "id"));
   const char *order = json_string_value(json_object_get(root, "order")),
@@ -229,7 +229,7 @@ static vxm_status read_packing(vxm_zarr_array *out, const json_t *root, const sp
   return VXM_OK;
 }
 
-static vxm_status check_chunk(const vxm_zarr_array *array, const spot *p, vxm_error *error) {
+static vxm_status check_chunk(const vxm_zarr_array *array, const location *p, vxm_error *error) {
   uint64_t bytes = vxm_scalar_bytes(array->scalar);
   for (int a = 0; a < array->rank; a++) {
     if ((uint64_t)array->chunk[a] > CHUNK_BYTES_MAX / bytes)
@@ -264,7 +264,7 @@ static bool put_float(unsigned char *to, double number, vxm_scalar scalar) {
   return scalar != VXM_FLOAT16 || isnan(number) || number == 0;
 }
 
-static vxm_status read_fill(vxm_zarr_array *out, const json_t *root, const spot *p, vxm_error *error) {
+static vxm_status read_fill(vxm_zarr_array *out, const json_t *root, const location *p, vxm_error *error) {
   const json_t *fill = json_object_get(root, "fill_value");
   const char *text = json_string_value(fill);
   bool is_float = vxm_scalar_is_float(out->scalar), good = true;
@@ -375,7 +375,7 @@ static void read_attributes(vxm_zarr_array *out, vxm_context *context, const jso
 /* ---- In: all of it ---- */
 
 /** What else the folder is, if it has no .zarray. */
-static vxm_status fail_missing(int folder, const spot *p, vxm_error *error) {
+static vxm_status fail_missing(int folder, const location *p, vxm_error *error) {
   const char *name = p->input->name;
   const vxm_place where = {name, 0, -1, -1};
   if (faccessat(folder, ".zgroup", F_OK, 0) == 0)
@@ -387,7 +387,7 @@ static vxm_status fail_missing(int folder, const spot *p, vxm_error *error) {
   return vxm_fail_at(error, VXM_ERROR_FORMAT, where, "not a Zarr array: it has no .zarray");
 }
 
-static vxm_status read_array(vxm_zarr_array *out, const json_t *root, const spot *p, vxm_error *error) {
+static vxm_status read_array(vxm_zarr_array *out, const json_t *root, const location *p, vxm_error *error) {
   if (json_integer_value(json_object_get(root, "zarr_format")) != 2)
     return FAIL(p, error, "its \"zarr_format\" is not 2");
   vxm_status status = read_shape(out, root, p, error);
@@ -402,7 +402,7 @@ static vxm_status read_array(vxm_zarr_array *out, const json_t *root, const spot
 
 static vxm_status read_both(vxm_zarr_array *out, int folder, const vxm_input *input, const char *array_path,
                             const char *attributes_path, vxm_error *error) {
-  const spot p = {array_path, input};
+  const location p = {array_path, input};
   json_t *root;
   vxm_status status = load(&root, folder, ".zarray", array_path, input->context, error);
   if (status == VXM_OK)

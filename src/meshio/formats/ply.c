@@ -43,20 +43,21 @@ static uint64_t announced_faces(const vxm_ply_header *header) {
   return faces;
 }
 
-typedef void note_fn(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
+typedef void warn_fn(const vxm_tokenizer *scan, const vxm_text_defect *tally, const char *what,
                      const char *things);
 
-static void note_damage(const vxm_tokenizer *scan, const vxm_ply_header *header, const vxm_ply_body *body) {
-  note_fn *note = header->ascii ? vxm_text_defect_warn_line : vxm_text_defect_warn_byte;
+static void warn_of_damage(const vxm_tokenizer *scan, const vxm_ply_header *header,
+                           const vxm_ply_body *body) {
+  warn_fn *warn = header->ascii ? vxm_text_defect_warn_line : vxm_text_defect_warn_byte;
   vxm_text_defect_warn_line(scan, &header->no_corners, "faces have no list vertex_indices; passed over",
                             "elements");
-  note(scan, &body->numbers, "coordinate is not a number; taken as NaN", "numbers");
-  note(scan, &body->short_lines, "line has fewer values than the header says", "lines");
-  note(scan, &body->long_lines, "line has more values than the header says; the rest is ignored", "lines");
-  note(scan, &body->bad_faces, "face is not a list of whole numbers; skipped", "faces");
-  note(scan, &body->beyond, "face names a vertex that does not exist; skipped", "faces");
-  note(scan, &body->small_faces, "face has fewer than 3 corners; skipped", "faces");
-  note(scan, &body->bad_strips, "strip names a vertex that does not exist; broken off there", "numbers");
+  warn(scan, &body->numbers, "coordinate is not a number; taken as NaN", "numbers");
+  warn(scan, &body->short_lines, "line has fewer values than the header says", "lines");
+  warn(scan, &body->long_lines, "line has more values than the header says; the rest is ignored", "lines");
+  warn(scan, &body->bad_faces, "face is not a list of whole numbers; skipped", "faces");
+  warn(scan, &body->beyond, "face names a vertex that does not exist; skipped", "faces");
+  warn(scan, &body->small_faces, "face has fewer than 3 corners; skipped", "faces");
+  warn(scan, &body->bad_strips, "strip names a vertex that does not exist; broken off there", "numbers");
 }
 
 static vxm_place place_of_end(const vxm_tokenizer *scan, const vxm_ply_header *header) {
@@ -97,7 +98,7 @@ static vxm_status finish(vxm_tokenizer *scan, const vxm_ply_header *header, vxm_
   vxm_status status = judge_cut(scan, header, body, error);
   if (status != VXM_OK)
     return status;
-  note_damage(scan, header, body);
+  warn_of_damage(scan, header, body);
   if (header->ascii && vxm_skip_space(scan))
     vxm_warn(&soup->warnings, "line %" PRId64 ": more than announced; ignored (lines: %" PRIu64 ")",
              vxm_tokenizer_line(scan, scan->at), vxm_lines_with_data(scan, 0, UINT64_MAX));

@@ -116,13 +116,13 @@ static vxm_status send_text(const reading *r, const char *name, vxm_error *error
   return r->sink->text(r->sink->payload, name, strlen(name), text, size, error);
 }
 
-/** One text, or one for each axis. */
+/** One text, or one for each axis, of which those of x, y and z are the first three. */
 static vxm_status send_axes(const reading *r, vxm_error *error) {
   static const char key[] = "axes";
   const texts found = read_texts(r, key);
   char all[32] = "";
   size_t filled = 0;
-  for (size_t t = 0; t < found.count && t < sizeof all; t++) {
+  for (size_t t = 0; t < found.count && t < 3; t++) {
     size_t size;
     const char *text = text_at(&found, t, &size);
     if (size > sizeof all - filled)

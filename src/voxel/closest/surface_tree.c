@@ -10,7 +10,7 @@
 #include <immintrin.h>
 #endif
 
-enum { LEAF = VXM_ORDER_LEAF, DEPTH_MAX = 40, LANES = 4 };
+enum { LEAF = VXM_SPATIAL_SORT_LEAF, DEPTH_MAX = 40, LANES = 4 };
 
 typedef struct box {
   double low[3], high[3];

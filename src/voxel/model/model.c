@@ -98,7 +98,9 @@ vxm_status vxm_model_begin_on(vxm_model_pass **out, vxm_model *model, const vxm_
                               const double transform[12], uint8_t *confidence, vxm_error *error) {
   *out = NULL;
   vxm_model_result *mine;
-  vxm_status status = vxm_model_results_mine(&mine, model->results, error);
+  vxm_status status = vxm_space_check_sizes(&lattice->space, error);
+  if (status == VXM_OK)
+    status = vxm_model_results_mine(&mine, model->results, error);
   if (status != VXM_OK)
     return status;
   mine->warnings.count = 0;

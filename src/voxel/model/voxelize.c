@@ -13,7 +13,7 @@ vxm_status vxm_voxelize_into(vxm_grid *grid, vxm_voxelize_report *report, vxm_mo
   if (status == VXM_OK && report) {
     int64_t voxels;
     uint64_t hash;
-    vxm_grid_sum(grid, &voxels, &hash);
+    vxm_grid_count_hash(grid, &voxels, &hash);
     vxm_model_report(pass, report, voxels, hash);
   }
   vxm_model_close(model, pass);

@@ -98,7 +98,7 @@ static vxm_status check_entries(const vxm_sparse_file *file, vxm_error *error) {
 /** What the index says is within the grid, and as much as the header says. */
 static vxm_status check_sum(const vxm_sparse_file *file, vxm_error *error) {
   uint64_t voxels;
-  if (!vxm_octree_file_sum(&voxels, file))
+  if (!vxm_octree_file_count_voxels(&voxels, file))
     return vxm_fail_byte(error, &file->input, file->index,
                          "the index has voxels beyond the grid: the file is damaged");
   if (voxels != file->voxels)

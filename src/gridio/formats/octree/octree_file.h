@@ -64,7 +64,7 @@ vxm_status vxm_octree_file_load(vxm_sparse **out, const vxm_sparse_file *file, c
 /** Voxels of a tile, as the index tells it. */
 uint64_t vxm_octree_file_tile_voxels(const vxm_sparse_file *file, size_t tile);
 /** Sums the voxels that the index tells. @return whether all that is full in it is within the grid */
-bool vxm_octree_file_sum(uint64_t *voxels, const vxm_sparse_file *file);
+bool vxm_octree_file_count_voxels(uint64_t *voxels, const vxm_sparse_file *file);
 /** Adds what the index alone tells, to cubes that are not smaller than tiles. */
 void vxm_octree_file_count(const vxm_octree_counts *box, const vxm_sparse_file *file);
 

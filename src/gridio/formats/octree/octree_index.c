@@ -64,7 +64,7 @@ static void walk_index(walk *w) {
     walk_node(w, w->file->levels - 1, 0, origin);
 }
 
-bool vxm_octree_file_sum(uint64_t *voxels, const vxm_sparse_file *file) {
+bool vxm_octree_file_count_voxels(uint64_t *voxels, const vxm_sparse_file *file) {
   walk w = {.file = file, .is_inside = true};
   walk_index(&w);
   *voxels = w.voxels;

@@ -101,7 +101,7 @@ static vxm_status load(loaded *l, const vxm_input *input, vxm_error *error) {
   return status;
 }
 
-static void add_notes(vxm_warnings *warnings, const loaded *l) {
+static void add_warnings(vxm_warnings *warnings, const loaded *l) {
   if (l->scene.left_out > 0)
     vxm_warn(warnings, "%zu models behind the first are left out: without a scene they are an animation",
              l->scene.left_out);
@@ -166,7 +166,7 @@ vxm_status vxm_vox_read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_ru
   if (status == VXM_OK)
     status = vxm_progress(input->context, "reading", 1, error);
   if (status == VXM_OK)
-    add_notes(&grid->warnings, &l);
+    add_warnings(&grid->warnings, &l);
   unload(&l);
   if (status != VXM_OK) {
     vxm_grid_destroy(grid);
@@ -249,7 +249,7 @@ static vxm_status fill(values *v, const loaded *l, bool are_labels, vxm_error *e
     find_names(&about, l, v);
   }
   vxm_field_describe(field, &about);
-  add_notes(&field->warnings, l);
+  add_warnings(&field->warnings, l);
   return status == VXM_OK ? vxm_progress(field->context, "reading", 1, error) : status;
 }
 
