@@ -82,7 +82,7 @@ static void each_part_of_the_name_matters(void **state) {
   free(out);
   free(other);
   /* The rotation is the same with and without displacement, scaling and mirrors. */
-  vxm_pose pose[2];
+  vxm_pose pose[2] = {VXM_POSE_INIT, VXM_POSE_INIT};
   for (int k = 0; k < 2; k++) {
     if (k == 1)
       options.displace = options.scale = 0, options.mirror = 0;
