@@ -20,7 +20,7 @@ vxm_status vxm_model_voxelize_device(vxm_device_voxels **out, vxm_model *model, 
   vxm_status status = check_format(format, error);
   if (status == VXM_OK)
     status = vxm_space_check(space, error);
-  return status == VXM_OK ? vxm_voxelize_device_voxels(out, model, space, transform, format, error) : status;
+  return status == VXM_OK ? vxm_voxelize_on_device(out, model, space, transform, format, error) : status;
 }
 
 vxm_status vxm_sampler_batch_device(vxm_device_voxels **out, vxm_sampler *sampler,

@@ -83,7 +83,7 @@ vxm_status vxm_worker_keep(vxm_worker *worker, vxm_device_voxels *voxels, int64_
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error) {
   vxm_status status = place(worker, voxels->info.dims[0], subject, placement, noise, false, error);
-  return status == VXM_OK ? vxm_model_pass_device_voxels(&worker->instance.pass, voxels, index, error)
+  return status == VXM_OK ? vxm_model_pass_keep_on_device(&worker->instance.pass, voxels, index, error)
                           : status;
 }
 

@@ -37,7 +37,7 @@ typedef struct vxm_band_group {
 
 /** A group of voxels that has to be looked at in doubles, for a triangle. */
 typedef struct vxm_band_note {
-  uint16_t group, triangle; /**< the how manieth of its family */
+  uint16_t group, triangle; /**< indices within its family */
 } vxm_band_note;
 
 /** A note that still holds, and a bit for each voxel that it does for. */

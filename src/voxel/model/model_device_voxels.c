@@ -62,8 +62,8 @@ static vxm_status keep_made_here(vxm_model_pass *pass, vxm_device_voxels *voxels
   return status;
 }
 
-vxm_status vxm_model_pass_device_voxels(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
-                                        vxm_error *error) {
+vxm_status vxm_model_pass_keep_on_device(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
+                                         vxm_error *error) {
   vxm_engine *engine = pass->solid.engine;
   vxm_window window = vxm_window_of(&pass->space, voxels->layout, 0, pass->space.dims[voxels->layout.slow]);
   vxm_error local = VXM_ERROR_INIT;
@@ -81,15 +81,15 @@ vxm_status vxm_model_pass_device_voxels(vxm_model_pass *pass, vxm_device_voxels 
   return status;
 }
 
-vxm_status vxm_voxelize_device_voxels(vxm_device_voxels **out, vxm_model *model, const vxm_space *space,
-                                      const double transform[12], vxm_voxel_format format, vxm_error *error) {
+vxm_status vxm_voxelize_on_device(vxm_device_voxels **out, vxm_model *model, const vxm_space *space,
+                                  const double transform[12], vxm_voxel_format format, vxm_error *error) {
   vxm_device_voxels *voxels = NULL;
   vxm_model_pass *pass = NULL;
   vxm_status status = vxm_device_voxels_create(&voxels, model->options.engine, space, 1, format, error);
   if (status == VXM_OK)
     status = vxm_model_begin(&pass, model, space, transform, NULL, error);
   if (status == VXM_OK)
-    status = vxm_model_pass_device_voxels(pass, voxels, 0, error);
+    status = vxm_model_pass_keep_on_device(pass, voxels, 0, error);
   vxm_model_close(model, pass);
   if (status == VXM_OK)
     *out = voxels;

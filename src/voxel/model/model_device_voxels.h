@@ -11,11 +11,11 @@ vxm_status vxm_device_voxels_create(vxm_device_voxels **out, vxm_engine *engine,
                                     int64_t count, vxm_voxel_format format, vxm_error *error);
 
 /** Makes the grid of a pass that has been placed into grid `index` of such room. */
-vxm_status vxm_model_pass_device_voxels(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
-                                        vxm_error *error);
+vxm_status vxm_model_pass_keep_on_device(vxm_model_pass *pass, vxm_device_voxels *voxels, int64_t index,
+                                         vxm_error *error);
 
 /** See vxm_model_voxelize_device in voxmend/experimental.h; the space has been checked. */
-vxm_status vxm_voxelize_device_voxels(vxm_device_voxels **out, vxm_model *model, const vxm_space *space,
-                                      const double transform[12], vxm_voxel_format format, vxm_error *error);
+vxm_status vxm_voxelize_on_device(vxm_device_voxels **out, vxm_model *model, const vxm_space *space,
+                                  const double transform[12], vxm_voxel_format format, vxm_error *error);
 
 #endif

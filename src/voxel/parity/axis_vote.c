@@ -167,12 +167,14 @@ static int64_t vote_on_slab(const vote_state *state, const slab *s, const uint64
   if (state->job->rule != VXM_VOTE_AUTO)
     return count_votes(state, s, voters, 0, s->count, NULL, added);
   for (size_t k = 0; k < s->slices; k++) {
-    vxm_odd_words words = vxm_odd_words_of(&state->odd, first + k);
-    if (!vxm_odd_lines_in(&state->odd, first + k))
-      contested += count_votes(state, s, voters, k * slice, slice, NULL, added);
-    else
-      while (vxm_odd_words_next(&words))
+    size_t done = 0; /* words of the slice */
+    if (vxm_odd_lines_in(&state->odd, first + k)) {
+      vxm_odd_words words = vxm_odd_words_of(&state->odd, first + k);
+      for (; vxm_odd_words_next(&words); done = words.at + words.count)
         contested += count_votes(state, s, voters, k * slice + words.at, words.count, words.odd, added);
+    }
+    if (done < slice)
+      contested += count_votes(state, s, voters, k * slice + done, slice - done, NULL, added);
   }
   return contested;
 }

@@ -42,7 +42,8 @@ uint64_t vxm_odd_lines_bytes(const vxm_window *window, size_t parts);
 /** Whether a line through a slice, counted from the window's first, is odd. */
 bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice);
 
-/** Some words of a slice, with a bit wherever an axis abstains. */
+/** Some words of a slice, with a bit wherever an axis abstains: `odd` points into itself, so that it cannot
+ * be copied once words were taken. */
 enum { VXM_ODD_WORDS = 64 };
 typedef struct vxm_odd_words {
   const vxm_odd_lines *lines;
@@ -57,9 +58,9 @@ vxm_odd_words vxm_odd_words_of(const vxm_odd_lines *lines, size_t slice);
 bool vxm_odd_words_next(vxm_odd_words *words);
 
 /**
- * Takes the votes of axes that abstain out of a slice, such that a count of the three tells it all: it is
- * three where no axis abstains and all say inside, none where two axes or three are left and say outside.
- * Elsewhere it is one or two: two where most of the axes that are left say inside.
+ * Takes the votes of axes that abstain out of a slice. How many of the three say inside then tells all that
+ * the votes do: three where no axis abstains and all say inside; none where two axes or three are left and
+ * say outside; elsewhere one or two, and two where most of the axes that are left say inside.
  *
  * @param voters words of the slice for the fast, the middle and the slow axis
  */

@@ -69,7 +69,7 @@ typedef struct vxm_surface_cut {
  */
 #define VXM_SURFACE_PLACE_MOST 4
 #define VXM_SURFACE_PLACE_LARGE (UINT32_MAX - 1) /* that is more bands, or more tiles in each */
-#define VXM_SURFACE_NOWHERE UINT32_MAX           /* it is beyond the window */
+#define VXM_SURFACE_PLACE_NONE UINT32_MAX        /* it is beyond the window */
 
 typedef struct vxm_surface_build vxm_surface_build;
 

@@ -148,7 +148,7 @@ static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm
   const vxm_window *window = t->pen.window;
   *box = vxm_surface_bounds_of(t->pen.lattice, window->layout, v).box;
   if (!vxm_surface_meet(box, &t->pen.tile))
-    return VXM_SURFACE_NOWHERE;
+    return VXM_SURFACE_PLACE_NONE;
   size_t low = (size_t)(box->begin[VXM_SLOW] - window->begin) >> t->cut.slice_bits;
   size_t high = (size_t)(box->end[VXM_SLOW] - 1 - window->begin) >> t->cut.slice_bits;
   size_t left = (size_t)box->begin[VXM_MIDDLE] >> t->cut.row_bits;
@@ -177,7 +177,7 @@ static void place_some(const tiling *t, size_t begin, size_t end) {
 static void sort_some(const tiling *t, size_t *counter, size_t begin, size_t end) {
   for (size_t i = begin; i < end; i++) {
     uint32_t place = t->places[i];
-    if (place == VXM_SURFACE_NOWHERE)
+    if (place == VXM_SURFACE_PLACE_NONE)
       continue;
     if (place == VXM_SURFACE_PLACE_LARGE) {
       const vxm_point *v[3];

@@ -25,9 +25,9 @@ typedef struct vxm_sieve {
   int32_t step[3];             /**< bytes from a row to the next one, along the middle and the slow axis */
   const uint64_t *cells;       /**< of the points */
   const uint32_t *short_cells; /**< as in vxm_thin_job */
-  const uint64_t *middles;     /**< as in vxm_thin_job; and if they are there: */
+  const uint64_t *middles;     /**< as in vxm_thin_job */
   uint32_t map_bits;           /**< from a map to the next one */
-  uint32_t short_first, short_last; /**< cells that have a voxel in the window */
+  uint32_t short_first, short_last; /**< cells that have a voxel in the window, if there are maps */
   uint32_t row_bits, slice_bits;    /**< from a row and a slice to the next one */
   uint32_t short_origin;            /**< from the cell before all voxels to the bit of the voxel behind it */
 } vxm_sieve;
