@@ -142,19 +142,6 @@ static void check_model(const vxm_soup *soup, const vxm_space *space, const vxm_
   vxm_model_destroy(cpu);
 }
 
-/** Every second face of a torus is left out. */
-static vxm_soup *make_sieve(const vxm_soup *whole) {
-  vxm_soup *out = shape_empty(context);
-  for (size_t v = 0; v < whole->vertex_count; v++)
-    shape_vertex(out, whole->positions[3 * v], whole->positions[3 * v + 1], whole->positions[3 * v + 2]);
-  for (size_t f = 0; f < whole->face_count; f += 2) {
-    size_t n;
-    const uint32_t *corner = vxm_face(whole, f, &n);
-    shape_face(out, corner, n);
-  }
-  return out;
-}
-
 static void test_models(void **state) {
   (void)state;
   vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
@@ -163,7 +150,7 @@ static void test_models(void **state) {
   shape_torus(torus, 40, 20, 10, 4, (double[3]){0, 0, 0});
   shape_torus(sheet, 40, 20, 10, 4, (double[3]){0, 0, 0});
   sheet->face_count -= 31;
-  vxm_soup *sieve = make_sieve(torus);
+  vxm_soup *sieve = shape_sieve(torus);
   check_model(torus, &space, &how, false); /* thin parts are looked after */
   how.thin = VXM_THIN_DROP;
   check_model(torus, &space, &how, true);

@@ -88,15 +88,9 @@ static void drop_group(void) {
 /* ---- Grids ---- */
 
 static vxm_soup *make_sieve(void) {
-  vxm_soup *whole = shape_empty(context), *out = shape_empty(context);
+  vxm_soup *whole = shape_empty(context);
   shape_torus(whole, 40, 20, 20, 8, (double[3]){30, 30, 16});
-  for (size_t v = 0; v < whole->vertex_count; v++)
-    shape_vertex(out, whole->positions[3 * v], whole->positions[3 * v + 1], whole->positions[3 * v + 2]);
-  for (size_t f = 0; f < whole->face_count; f += 2) {
-    size_t n;
-    const uint32_t *corner = vxm_face(whole, f, &n);
-    shape_face(out, corner, n);
-  }
+  vxm_soup *out = shape_sieve(whole);
   vxm_soup_destroy(whole);
   return out;
 }

@@ -101,15 +101,9 @@ static void check(const vxm_soup *const soups[], uint32_t soup_count, vxm_mode m
 
 /** Every second face of a torus is left out. */
 static vxm_soup *sieve(void) {
-  vxm_soup *whole = shape_empty(context), *out = shape_empty(context);
+  vxm_soup *whole = shape_empty(context);
   shape_torus(whole, 24, 12, 10, 4, (double[3]){0, 0, 0});
-  for (size_t v = 0; v < whole->vertex_count; v++)
-    shape_vertex(out, whole->positions[3 * v], whole->positions[3 * v + 1], whole->positions[3 * v + 2]);
-  for (size_t f = 0; f < whole->face_count; f += 2) {
-    size_t n;
-    const uint32_t *corner = vxm_face(whole, f, &n);
-    shape_face(out, corner, n);
-  }
+  vxm_soup *out = shape_sieve(whole);
   vxm_soup_destroy(whole);
   return out;
 }

@@ -93,4 +93,17 @@ static inline void shape_torus(vxm_soup *soup, uint32_t rings, uint32_t sides, d
     }
 }
 
+/** Every second face is left out. */
+static inline vxm_soup *shape_sieve(const vxm_soup *whole) {
+  vxm_soup *out = shape_empty(whole->context);
+  for (size_t v = 0; v < whole->vertex_count; v++)
+    shape_vertex(out, whole->positions[3 * v], whole->positions[3 * v + 1], whole->positions[3 * v + 2]);
+  for (size_t f = 0; f < whole->face_count; f += 2) {
+    size_t n;
+    const uint32_t *corner = vxm_face(whole, f, &n);
+    shape_face(out, corner, n);
+  }
+  return out;
+}
+
 #endif
