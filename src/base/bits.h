@@ -57,6 +57,16 @@ static inline bool vxm_line_is(const uint64_t *line, uint64_t value) {
   return (unlike[0] | unlike[1]) == 0;
 }
 
+/** Whether all of some words are zero. */
+static inline bool vxm_words_are_zero(const uint64_t *words, size_t count) {
+  size_t w = 0;
+  while (w + VXM_LINE_WORDS <= count && vxm_line_is(words + w, 0))
+    w += VXM_LINE_WORDS;
+  while (w < count && !words[w])
+    w++;
+  return w == count;
+}
+
 /** Whether two lines are the same. */
 static inline bool vxm_lines_equal(const uint64_t *a, const uint64_t *b) {
   const vxm_two_words *v = (const vxm_two_words *)(const void *)a,

@@ -37,13 +37,16 @@ typedef struct vxm_sink_extent {
   float background;        /**< of the voxels that are in no block and no cube */
 } vxm_sink_extent;
 
+/** What is there of where an array lies: bits. */
+enum { VXM_PLACE_ORIGIN = 1, VXM_PLACE_SIZE = 2 };
+
 /** An array with a value for each voxel, or the 4 bytes of a colour. */
 typedef struct vxm_sink_array {
   uint32_t scalar;   /**< vxm_scalar */
   uint32_t is_color; /**< 0 or 1 */
   int64_t shape[3];  /**< the last is the fastest */
   double place[6];   /**< origin, and size of voxels */
-  uint32_t placed;   /**< 1 if the origin is there, plus 2 if the size is */
+  uint32_t placed;   /**< VXM_PLACE_ORIGIN, VXM_PLACE_SIZE */
   uint32_t fits;     /**< arrays of the file that could have been read */
 } vxm_sink_array;
 

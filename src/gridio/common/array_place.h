@@ -4,12 +4,10 @@
 #define VXM_GRIDIO_COMMON_ARRAY_PLACE_H
 
 #include "base/warnings.h"
+#include "sandbox/voxel_sink.h"
 
 #include <stdbool.h>
 #include <stddef.h>
-
-/** What of it is there: bits. */
-enum { VXM_PLACE_ORIGIN = 1, VXM_PLACE_SIZE = 2 };
 
 /**
  * Takes x, y and z in any order, large or small, with or without commas and blanks between them, and c for

@@ -86,6 +86,11 @@ INLINE unsigned wide_bits(wide_mask mask) {
 #define SIXTEEN(bits) FOUR(bits), FOUR((bits) + 4), FOUR((bits) + 8), FOUR((bits) + 12)
 #define MANY(bits) SIXTEEN(bits), SIXTEEN((bits) + 16), SIXTEEN((bits) + 32), SIXTEEN((bits) + 48)
 static const uint64_t lanes_of_bits[256] = {MANY(0U), MANY(64U), MANY(128U), MANY(192U)};
+#undef MANY
+#undef SIXTEEN
+#undef FOUR
+#undef LANES_OF
+#undef LANE
 
 /** The numbers of the lanes that have a bit, one behind the other. */
 INLINE __m256i lanes_chosen(unsigned bits) {
@@ -99,12 +104,6 @@ INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t
     _mm256_storeu_ps(to->at[a] + count, _mm256_permutevar8x32_ps((__m256)q[a], lane));
   _mm256_storeu_si256((__m256i *)(void *)(to->place + count),
                       _mm256_add_epi32(lane, _mm256_set1_epi32(first)));
-}
-
-/** The first `count` of a vector. */
-INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
-  for (size_t n = 0; n < count; n++)
-    to[place[n]] = x[n];
 }
 
 /** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many

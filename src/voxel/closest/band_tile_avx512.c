@@ -88,6 +88,7 @@ INLINE wide wide_gather(const float *from, const int32_t *place) {
   return (wide)_mm512_i32gather_ps(_mm512_loadu_si512(place), from, 4);
 }
 
+#define HAS_WIDE_SCATTER
 /** The first `count` of a vector. */
 INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
   _mm512_mask_i32scatter_ps(to, (__mmask16)((1U << count) - 1), _mm512_loadu_si512(place), (__m512)x, 4);

@@ -178,12 +178,6 @@ INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t
   }
 }
 
-/** The first `count` of a vector. */
-INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
-  for (size_t n = 0; n < count; n++)
-    to[place[n]] = x[n];
-}
-
 /** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many
  * there are then. Others come along, so that all lanes have the same triangle. */
 INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, const int32_t *place,

@@ -112,19 +112,12 @@ static void fold_middle(const vote_state *state, slab *s) {
     state->kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
 }
 
-static bool is_zero(const uint64_t *words, size_t count) {
-  uint64_t any = 0;
-  for (size_t w = 0; w < count; w++)
-    any |= words[w];
-  return any == 0;
-}
-
 /** The flips along the slow axis, folded along it. `carry` is what is open along slices at the begin of the
  * slab, then at its end. */
 static void fold_slow(const vote_state *state, slab *s, uint64_t *carry) {
   size_t slice = state->window->slice_words;
   uint64_t *words = s->words[SLOW];
-  s->used[SLOW] = flip_slab(state, SLOW, s->index, words) || !is_zero(carry, slice);
+  s->used[SLOW] = flip_slab(state, SLOW, s->index, words) || !vxm_words_are_zero(carry, slice);
   if (!s->used[SLOW])
     return;
   memcpy(words - slice, carry, slice * sizeof *carry);

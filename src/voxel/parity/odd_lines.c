@@ -76,13 +76,6 @@ static void find_plane(size_t along, int worker, void *payload) {
   }
 }
 
-static bool is_some(const uint64_t *words, size_t count) {
-  uint64_t any = 0;
-  for (size_t w = 0; w < count; w++)
-    any |= words[w];
-  return any != 0;
-}
-
 vxm_status vxm_odd_lines_find(vxm_odd_lines *out, vxm_context *context, const vxm_window *window,
                               const vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                               size_t part_begin, size_t part_end, vxm_error *error) {
@@ -105,7 +98,7 @@ vxm_status vxm_odd_lines_find(vxm_odd_lines *out, vxm_context *context, const vx
   for (int a = 0; a < 3; a++)
     vxm_free(context, f.planes[a].of_part);
   if (status == VXM_OK)
-    out->has_slow = is_some(out->along[2], words_of(&f.planes[2]));
+    out->has_slow = !vxm_words_are_zero(out->along[2], words_of(&f.planes[2]));
   else
     vxm_odd_lines_destroy(out);
   return status;
@@ -139,8 +132,8 @@ static const uint64_t *fast_row(const vxm_odd_lines *lines, size_t slice) {
 
 bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice) {
   const vxm_window *w = &lines->window;
-  return lines->has_slow || is_some(middle_row(lines, slice), w->row_words) ||
-         is_some(fast_row(lines, slice), ((size_t)w->middle_dim + 63) / 64);
+  return lines->has_slow || !vxm_words_are_zero(middle_row(lines, slice), w->row_words) ||
+         !vxm_words_are_zero(fast_row(lines, slice), ((size_t)w->middle_dim + 63) / 64);
 }
 
 vxm_odd_words vxm_odd_words_of(const vxm_odd_lines *lines, size_t slice) {

@@ -27,24 +27,16 @@ static vxm_status fill_voters(vxm_voxel_pass *pass, const vxm_window *window, si
   return status;
 }
 
-static bool is_clear(const uint64_t *words, size_t count) {
-  size_t w = 0;
-  while (w + VXM_LINE_WORDS <= count && vxm_line_is(words + w, 0))
-    w += VXM_LINE_WORDS;
-  while (w < count && !words[w])
-    w++;
-  return w == count;
-}
-
 /** The slices from the first to the last one in which something is asked about; `mask` becomes theirs. */
 static vxm_window asked_slices(const vxm_window *window, const uint64_t **mask) {
   vxm_window part = *window;
   const size_t slice = window->slice_words;
-  for (; part.begin < part.end && is_clear(*mask, slice); part.begin++) {
+  for (; part.begin < part.end && vxm_words_are_zero(*mask, slice); part.begin++) {
     part.words += slice;
     *mask += slice;
   }
-  while (part.begin < part.end && is_clear(*mask + (size_t)(part.end - part.begin - 1) * slice, slice))
+  while (part.begin < part.end &&
+         vxm_words_are_zero(*mask + (size_t)(part.end - part.begin - 1) * slice, slice))
     part.end--;
   return part;
 }

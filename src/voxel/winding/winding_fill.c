@@ -233,9 +233,7 @@ vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, co
   if (status != VXM_OK)
     return status;
   if (vxm_winding_decided(&job.asking)->words == window->words) {
-    size_t words = window->slice_words * (size_t)(window->end - window->begin);
-    for (size_t w = 0; w < words && !*added; w++)
-      *added = window->words[w] != 0;
+    *added |= !vxm_words_are_zero(window->words, window->slice_words * (size_t)(window->end - window->begin));
     return VXM_OK;
   }
   merge_state state = {.job = &job};
