@@ -247,6 +247,33 @@ static void fins(void **state) {
   }
 }
 
+/** A body that was drawn from both sides, and lies at another one with a face and an edge, on any of its
+ * sides, is not a wall within that. */
+static void bodies_of_two_sides(void **state) {
+  for (int side = 0; side < 6; side++) {
+    const int axis = side / 2, across = (axis + 1) % 3;
+    vxm_soup *soup = new_soup(*state);
+    add_cube(soup, 0);
+    add_cube(soup, 0);
+    for (size_t v = 8; v < 16; v++) {
+      double *p = &soup->positions[3 * v];
+      p[axis] = side % 2 == 0 ? -0.25 * p[axis] : 1 + 0.25 * p[axis];
+      p[across] *= 0.5;
+    }
+    for (size_t c = 24; c < 48; c += 4) {
+      const uint32_t *corner = &soup->indices[c];
+      add_face(soup, (uint32_t[]){corner[3], corner[2], corner[1], corner[0]}, 4);
+    }
+    REPAIR_REPORT(report);
+    vxm_soup *out = repaired(soup, NULL, &report);
+    assert_int_equal(out->face_count, 12);
+    assert_true(report.after->closed && report.after->volume > 1.124999 && report.after->volume < 1.125001);
+    assert_repair_is_done(out, NULL);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** A strip of slivers, each of which can only go when the next one has gone. */
 static void zero_area_chain(void **state) {
   enum { N = 60000 };
@@ -355,6 +382,7 @@ int main(void) {
       cmocka_unit_test(zero_area_chain),
       cmocka_unit_test(duplicates),
       cmocka_unit_test(fins),
+      cmocka_unit_test(bodies_of_two_sides),
       cmocka_unit_test(unused),
       cmocka_unit_test(notes_format_and_nothing),
       cmocka_unit_test(bad_options),

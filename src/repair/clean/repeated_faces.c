@@ -280,15 +280,22 @@ static bool may_be_wall(const deciding *d, size_t face) {
          d->fins[vxm_set_of(d->parent, face)].most == 2;
 }
 
+/** Whether a face belongs to sheets that are closed for themselves: they may be a body that lies at the solid
+ * with a face or two, so that one face does not tell of the others. */
+static bool may_be_body(const deciding *d, size_t face) {
+  const fin *f = &d->fins[vxm_set_of(d->parent, face)];
+  return d->kinds[face] == SHEET && !f->hangs && !f->rimmed;
+}
+
 static bool is_asked(const deciding *d, size_t face) {
   size_t root = vxm_set_of(d->parent, face);
   if (d->kinds[face] == PLAIN || !d->fins[root].touches)
     return false;
   bool whole = d->kinds[face] == SHEET || !d->groups.groups[d->groups.of_face[face]].balanced;
-  return whole ? root == face : may_be_wall(d, face);
+  return whole ? root == face || may_be_body(d, face) : may_be_wall(d, face);
 }
 
-/** Asks one face of a fin, or all of them, whether they lie within the solid. */
+/** Asks one face of a fin, or all of them, whether they lie within the solid: all have to. */
 static vxm_status ask(deciding *d, vxm_face_set_side *sets, size_t asked, const uint8_t *bound,
                       uint8_t *within, vxm_error *error) {
   vxm_status status = vxm_face_set_sides_find(sets, asked, d->state, &d->groups, bound, error);
@@ -320,9 +327,9 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
   for (size_t face = 0; sets && face < faces; face++)
     if (is_asked(d, face)) {
       size_t root = vxm_set_of(d->parent, face);
-      bool wall = may_be_wall(d, face);
+      bool wall = may_be_wall(d, face), each = wall || may_be_body(d, face);
       sets[asked++] =
-          (vxm_face_set_side){.face = wall ? face : d->fins[root].largest, .set = root, .asks_within = !wall};
+          (vxm_face_set_side){.face = each ? face : d->fins[root].largest, .set = root, .asks_within = !wall};
     }
   if (sets)
     status = ask(d, sets, asked, bound, within, error);
