@@ -45,7 +45,7 @@ static double right_square(const vxm_band_grid *grid, const int64_t at[3],
   return right;
 }
 
-static void check_tile(vxm_band_tile *tile, const vxm_band_families *all, const uint32_t *list,
+static void check_tile(vxm_band_tile *tile, const vxm_band_clusters *all, const uint32_t *list,
                        const vxm_distance_triangle *triangles) {
   const vxm_band_kernels *builds[3];
   size_t build_count = vxm_band_kernels_all(builds);
@@ -89,15 +89,15 @@ static void soup_free(const vxm_band_soup *soup) {
   free((void *)soup->corners);
 }
 
-static void check_families(const triangle_corners *corners, size_t count, const vxm_band_grid *grid,
+static void check_clusters(const triangle_corners *corners, size_t count, const vxm_band_grid *grid,
                            vxm_rng *rng) {
   static vxm_band_tile tile;
   vxm_distance_triangle *triangles = malloc(count * sizeof *triangles);
   for (size_t t = 0; t < count; t++)
     vxm_distance_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
-  vxm_band_families *all;
+  vxm_band_clusters *all;
   vxm_band_soup soup = soup_of(corners, count);
-  assert_int_equal(vxm_band_families_create(&all, context, &soup, grid, NULL), VXM_OK);
+  assert_int_equal(vxm_band_clusters_create(&all, context, &soup, grid, NULL), VXM_OK);
   uint32_t *list = malloc(all->count * sizeof *list);
   for (uint32_t i = 0; i < all->count; i++)
     list[i] = i;
@@ -106,7 +106,7 @@ static void check_families(const triangle_corners *corners, size_t count, const 
     check_tile(&tile, all, list, triangles);
   }
   free(list);
-  vxm_band_families_destroy(all);
+  vxm_band_clusters_destroy(all);
   soup_free(&soup);
   free(triangles);
 }
@@ -121,7 +121,7 @@ static void test_frames(void **state) {
     for (int round = 0; round < ROUNDS(20); round++) {
       size_t count = 1 + (size_t)vxm_rng_below(&rng, 12);
       triangle_corners *corners = make_corners(count, 8, &rng, kind);
-      check_families((const triangle_corners *)corners, count, &grid, &rng);
+      check_clusters((const triangle_corners *)corners, count, &grid, &rng);
       free(corners);
     }
 }
@@ -135,12 +135,12 @@ static void test_tiles(void **state) {
     double extent = round % 4 == 0 ? 60 : 16;
     triangle_corners *corners = make_corners(count, extent, &rng, round / 9 + round);
     vxm_band_grid grid = random_grid(extent, &rng, round);
-    check_families((const triangle_corners *)corners, count, &grid, &rng);
+    check_clusters((const triangle_corners *)corners, count, &grid, &rng);
     free(corners);
   }
 }
 
-/** So many that notes are looked at before all are taken. */
+/** So many that candidates are measured before all clusters have been tested. */
 static void test_crowd(void **state) {
   (void)state;
   enum { COUNT = 6000 };
@@ -155,7 +155,7 @@ static void test_crowd(void **state) {
         corners[t][c][a] = from[a] + vxm_rng_unit(&rng);
   }
   vxm_band_grid grid = {{2, 1, 0}, {12, 12, 12}, {1, 1, 1}, 3};
-  check_families((const triangle_corners *)corners, COUNT, &grid, &rng);
+  check_clusters((const triangle_corners *)corners, COUNT, &grid, &rng);
   free(corners);
 }
 
@@ -180,7 +180,7 @@ static void test_equal_slopes(void **state) {
         }
   assert_int_equal(t, COUNT);
   vxm_band_grid grid = {{0, 1, 2}, {20, 20, 20}, {1, 1, 1}, 3};
-  check_families((const triangle_corners *)corners, COUNT, &grid, &rng);
+  check_clusters((const triangle_corners *)corners, COUNT, &grid, &rng);
   free(corners);
 }
 
@@ -201,7 +201,7 @@ static void test_far_and_large(void **state) {
             corners[t][c][a] = a == 2 ? 7 + 1e-6 * vxm_rng_unit(&rng) : size * (vxm_rng_unit(&rng) - 0.5);
         }
     vxm_band_grid grid = {{0, 1, 2}, {20, 20, 14}, {1, 1, 1}, 3};
-    check_families((const triangle_corners *)corners, COUNT, &grid, &rng);
+    check_clusters((const triangle_corners *)corners, COUNT, &grid, &rng);
     free(corners);
   }
 }
@@ -280,21 +280,21 @@ static void test_memory(void **state) {
   vxm_band_grid grid = {{0, 1, 2}, {50, 70, 90}, {1, 1, 1}, 3};
   for (int part = 0; part <= 10; part++) {
     vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
-    options.memory_limit = (vxm_band_families_bytes(COUNT) + vxm_distance_band_bytes(COUNT, 2, grid.dims)) *
+    options.memory_limit = (vxm_band_clusters_bytes(COUNT) + vxm_distance_band_bytes(COUNT, 2, grid.dims)) *
                                (uint64_t)part / 10 +
                            1;
     vxm_context *own;
     assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
-    vxm_band_families *all;
+    vxm_band_clusters *all;
     vxm_distance_band *band = NULL;
-    vxm_status status = vxm_band_families_create(&all, own, &soup, &grid, NULL);
+    vxm_status status = vxm_band_clusters_create(&all, own, &soup, &grid, NULL);
     if (status == VXM_OK)
       status = vxm_distance_band_create(&band, all, 2, NULL);
     assert_true(status == VXM_OK || status == VXM_ERROR_MEMORY_LIMIT);
     assert_true((status == VXM_OK) == (band != NULL));
     assert_true(part < 10 || status == VXM_OK);
     vxm_distance_band_destroy(band);
-    vxm_band_families_destroy(all);
+    vxm_band_clusters_destroy(all);
     vxm_context_destroy(own);
   }
   soup_free(&soup);

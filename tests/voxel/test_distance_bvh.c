@@ -125,7 +125,7 @@ static void test_triangle(void **state) {
 
 static vxm_point_block random_tile(double extent, vxm_rng *rng, int kind) {
   static const double most[] = {INFINITY, 3, INFINITY, 0.4, 20};
-  vxm_point_block tile = {.most = most[kind % 5]};
+  vxm_point_block tile = {.max_distance = most[kind % 5]};
   for (int a = 0; a < 3; a++) {
     tile.step[a] = kind % 4 == 3 ? 0.3 + 0.7 * vxm_rng_unit(rng) : 1;
     tile.first[a] = (int64_t)vxm_rng_below(rng, (uint64_t)extent + 1);
@@ -150,7 +150,7 @@ static void check_tile(const vxm_distance_bvh *tree, const vxm_point_block *tile
     for (int j = 0; j < tile->count[1]; j++)
       for (int i = 0; i < tile->count[0]; i++) {
         const int n[3] = {i, j, k};
-        double p[3], right = INFINITY, most2 = tile->most * tile->most;
+        double p[3], right = INFINITY, most2 = tile->max_distance * tile->max_distance;
         for (int a = 0; a < 3; a++)
           p[a] = ((double)(tile->first[a] + n[a]) + 0.5) * tile->step[a];
         for (size_t t = 0; t < count; t++)

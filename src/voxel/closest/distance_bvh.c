@@ -15,21 +15,21 @@ typedef struct builder {
   vxm_distance_bvh *tree;
   vxm_distance_bvh_corners_fn corners;
   const void *payload;
-  vxm_spatial_point *spots; /**< the triangles, by three times their middles */
-  double (*boxes)[2][3];    /**< of the packs, then of the families of one level after the other */
-  int level;                /**< whose families are made */
+  vxm_spatial_point *centroids; /**< the triangles, by three times their centroids */
+  double (*boxes)[2][3];        /**< of the packs, then of the nodes of one level after the other */
+  int level;                    /**< whose nodes are made */
 } builder;
 
-static void make_spots(size_t slice, int worker, void *payload) {
+static void make_centroids(size_t slice, int worker, void *payload) {
   (void)worker;
   builder *b = payload;
   size_t end = vxm_slice_begin(b->tree->count, SLICES, slice + 1);
   for (size_t i = vxm_slice_begin(b->tree->count, SLICES, slice); i < end; i++) {
     double corner[3][3];
     b->corners(corner, i, b->payload);
-    b->spots[i].index = (uint32_t)i;
+    b->centroids[i].index = (uint32_t)i;
     for (int a = 0; a < 3; a++)
-      b->spots[i].at[a] = (float)(corner[0][a] + corner[1][a] + corner[2][a]);
+      b->centroids[i].at[a] = (float)(corner[0][a] + corner[1][a] + corner[2][a]);
   }
 }
 
@@ -79,7 +79,7 @@ static void make_pack(builder *b, size_t at) {
   }
   for (size_t i = first; i < end; i++) {
     double corner[3][3];
-    b->corners(corner, b->spots[i].index, b->payload);
+    b->corners(corner, b->centroids[i].index, b->payload);
     vxm_distance_triangle_make(&tree->triangles[i], (const double(*)[3])corner);
     for (int c = 0; c < 3; c++)
       grow(box, corner[c]);
@@ -98,13 +98,13 @@ static void make_packs(size_t slice, int worker, void *payload) {
     make_pack(b, i);
 }
 
-/* ---- Families ---- */
+/* ---- Nodes ---- */
 
-/** Makes family `at` of the level at hand. Its own box takes the place of one that has been seen. */
-static void make_family(builder *b, size_t at) {
+/** Makes node `at` of the level at hand. Its own box takes the place of one that has been seen. */
+static void make_node(builder *b, size_t at) {
   vxm_distance_bvh *tree = b->tree;
-  vxm_family *family = &tree->families[b->level][at];
-  size_t children = b->level > 0 ? tree->family_count[b->level - 1] : tree->pack_count;
+  vxm_bvh_node *node = &tree->nodes[b->level][at];
+  size_t children = b->level > 0 ? tree->node_count[b->level - 1] : tree->pack_count;
   size_t first = at * VXM_PACK, count = children - first < VXM_PACK ? children - first : VXM_PACK;
   double box[2][3];
   memcpy(box, b->boxes[first], sizeof box);
@@ -112,23 +112,23 @@ static void make_family(builder *b, size_t at) {
     grow(box, b->boxes[first + c][0]);
     grow(box, b->boxes[first + c][1]);
   }
-  family->reach = middle_of(family->origin, box);
-  family->valid = (uint32_t)vxm_low_bits((unsigned)count);
+  node->reach = middle_of(node->origin, box);
+  node->valid = (uint32_t)vxm_low_bits((unsigned)count);
   for (size_t c = 0; c < VXM_PACK; c++)
     for (int a = 0; a < 3; a++) {
       double(*child)[3] = b->boxes[first + (c < count ? c : 0)];
-      family->low[a][c] = (float)(child[0][a] - family->origin[a]);
-      family->high[a][c] = (float)(child[1][a] - family->origin[a]);
+      node->low[a][c] = (float)(child[0][a] - node->origin[a]);
+      node->high[a][c] = (float)(child[1][a] - node->origin[a]);
     }
   memcpy(b->boxes[at], box, sizeof box);
 }
 
-static vxm_status make_families(builder *b, vxm_error *error) {
+static vxm_status make_nodes(builder *b, vxm_error *error) {
   vxm_distance_bvh *tree = b->tree;
   vxm_status status = VXM_OK;
   for (b->level = 0; b->level < tree->levels && status == VXM_OK; b->level++)
-    for (size_t i = 0; i < tree->family_count[b->level] && status == VXM_OK; i++) {
-      make_family(b, i);
+    for (size_t i = 0; i < tree->node_count[b->level] && status == VXM_OK; i++) {
+      make_node(b, i);
       status = vxm_ask_at(i, tree->context, error);
     }
   return status;
@@ -136,14 +136,14 @@ static vxm_status make_families(builder *b, vxm_error *error) {
 
 /* ---- The tree ---- */
 
-static size_t families_of(size_t children) {
+static size_t nodes_over(size_t children) {
   return (children + VXM_PACK - 1) / VXM_PACK;
 }
 
 uint64_t vxm_distance_bvh_bytes(size_t count) {
-  uint64_t packs = families_of(count), families = packs / 7 + VXM_DISTANCE_BVH_LEVELS;
+  uint64_t packs = nodes_over(count), nodes = packs / 7 + VXM_DISTANCE_BVH_LEVELS;
   return count * (sizeof(vxm_distance_triangle) + sizeof(vxm_spatial_point)) +
-         packs * (sizeof(vxm_pack) + 6 * sizeof(double)) + families * sizeof(vxm_family) +
+         packs * (sizeof(vxm_pack) + 6 * sizeof(double)) + nodes * sizeof(vxm_bvh_node) +
          sizeof(vxm_distance_bvh) + 4096;
 }
 
@@ -151,14 +151,14 @@ uint64_t vxm_distance_bvh_bytes(size_t count) {
 static void allocate(builder *b, vxm_error *error) {
   vxm_distance_bvh *tree = b->tree;
   vxm_context *context = tree->context;
-  tree->pack_count = families_of(tree->count);
+  tree->pack_count = nodes_over(tree->count);
   tree->triangles = vxm_alloc(context, tree->count, sizeof *tree->triangles, error);
   tree->packs = vxm_alloc(context, tree->pack_count, sizeof *tree->packs, error);
   for (size_t n = tree->pack_count; tree->levels < 2 || n > 1; tree->levels++) {
-    tree->family_count[tree->levels] = n = families_of(n);
-    tree->families[tree->levels] = vxm_alloc(context, n, sizeof(vxm_family), error);
+    tree->node_count[tree->levels] = n = nodes_over(n);
+    tree->nodes[tree->levels] = vxm_alloc(context, n, sizeof(vxm_bvh_node), error);
   }
-  b->spots = vxm_alloc(context, tree->count, sizeof *b->spots, error);
+  b->centroids = vxm_alloc(context, tree->count, sizeof *b->centroids, error);
   b->boxes = vxm_alloc(context, tree->pack_count, sizeof *b->boxes, error);
 }
 
@@ -174,46 +174,47 @@ vxm_status vxm_distance_bvh_create(vxm_distance_bvh **out, vxm_context *context,
     tree->count = count;
     allocate(&b, &local);
   }
-  bool done = local.code == VXM_OK && vxm_parallel_asked(context, SLICES, make_spots, &b, &local) == VXM_OK &&
-              vxm_spatial_sort(b.spots, count, context, &local) == VXM_OK &&
+  bool done = local.code == VXM_OK &&
+              vxm_parallel_asked(context, SLICES, make_centroids, &b, &local) == VXM_OK &&
+              vxm_spatial_sort(b.centroids, count, context, &local) == VXM_OK &&
               vxm_parallel_asked(context, SLICES, make_packs, &b, &local) == VXM_OK &&
-              make_families(&b, &local) == VXM_OK;
+              make_nodes(&b, &local) == VXM_OK;
   if (done)
     *out = tree;
   else
     vxm_error_pass(error, &local);
   vxm_free(context, b.boxes);
-  vxm_free(context, b.spots);
+  vxm_free(context, b.centroids);
   if (local.code != VXM_OK)
     vxm_distance_bvh_destroy(tree);
   return local.code;
 }
 
-void vxm_distance_bvh_destroy(vxm_distance_bvh *nearest) {
-  if (!nearest)
+void vxm_distance_bvh_destroy(vxm_distance_bvh *tree) {
+  if (!tree)
     return;
-  for (int level = 0; level < nearest->levels; level++)
-    vxm_free(nearest->context, nearest->families[level]);
-  vxm_free(nearest->context, nearest->packs);
-  vxm_free(nearest->context, nearest->triangles);
-  vxm_free(nearest->context, nearest);
+  for (int level = 0; level < tree->levels; level++)
+    vxm_free(tree->context, tree->nodes[level]);
+  vxm_free(tree->context, tree->packs);
+  vxm_free(tree->context, tree->triangles);
+  vxm_free(tree->context, tree);
 }
 
 /* ---- Searches ---- */
 
 uint64_t vxm_distance_bvh_search_bytes(size_t count) {
-  uint64_t narrow = families_of(families_of(count));
-  return (narrow + families_of(narrow)) * sizeof(vxm_some) + sizeof(vxm_search) + 256;
+  uint64_t leaves = nodes_over(nodes_over(count));
+  return (leaves + nodes_over(leaves)) * sizeof(vxm_bvh_children) + sizeof(vxm_search) + 256;
 }
 
-vxm_status vxm_search_create(vxm_search **out, const vxm_distance_bvh *nearest, vxm_error *error) {
-  vxm_context *context = nearest->context;
+vxm_status vxm_search_create(vxm_search **out, const vxm_distance_bvh *tree, vxm_error *error) {
+  vxm_context *context = tree->context;
   vxm_error local = VXM_ERROR_INIT;
   vxm_search *search = vxm_calloc(context, 1, sizeof *search, &local);
   if (search) {
-    search->tree = nearest;
-    search->wide = vxm_alloc(context, nearest->family_count[1], sizeof *search->wide, &local);
-    search->narrow = vxm_alloc(context, nearest->family_count[0], sizeof *search->narrow, &local);
+    search->tree = tree;
+    search->tile_nodes = vxm_alloc(context, tree->node_count[1], sizeof *search->tile_nodes, &local);
+    search->block_nodes = vxm_alloc(context, tree->node_count[0], sizeof *search->block_nodes, &local);
   }
   if (local.code != VXM_OK) {
     vxm_search_destroy(search);
@@ -228,8 +229,8 @@ void vxm_search_destroy(vxm_search *search) {
   if (!search)
     return;
   vxm_context *context = search->tree->context;
-  vxm_free(context, search->narrow);
-  vxm_free(context, search->wide);
+  vxm_free(context, search->block_nodes);
+  vxm_free(context, search->tile_nodes);
   vxm_free(context, search);
 }
 

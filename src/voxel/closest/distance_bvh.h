@@ -20,7 +20,7 @@ vxm_status vxm_distance_bvh_create(vxm_distance_bvh **out, vxm_context *context,
                                    vxm_distance_bvh_corners_fn corners, const void *payload,
                                    vxm_error *error);
 /** NULL is allowed. */
-void vxm_distance_bvh_destroy(vxm_distance_bvh *nearest);
+void vxm_distance_bvh_destroy(vxm_distance_bvh *tree);
 /** Bytes that a tree of so many triangles takes at most, and those of a search. */
 uint64_t vxm_distance_bvh_bytes(size_t count);
 uint64_t vxm_distance_bvh_search_bytes(size_t count);
@@ -28,7 +28,7 @@ uint64_t vxm_distance_bvh_search_bytes(size_t count);
 /** What a search works with; each thread has its own. */
 typedef struct vxm_search vxm_search;
 
-vxm_status vxm_search_create(vxm_search **out, const vxm_distance_bvh *nearest, vxm_error *error);
+vxm_status vxm_search_create(vxm_search **out, const vxm_distance_bvh *tree, vxm_error *error);
 /** NULL is allowed. */
 void vxm_search_destroy(vxm_search *search);
 
@@ -40,16 +40,16 @@ typedef struct vxm_point_block {
   int64_t first[3]; /**< the first point of the tile */
   int count[3];     /**< points along each axis, 1 to VXM_TILE */
   double step[3];
-  double most; /**< distance from which on it does not matter; INFINITY = it always does */
+  double max_distance; /**< what is as far or farther does not matter; INFINITY = all does */
 } vxm_point_block;
 
 /**
  * Squared distances of the points of a tile to the nearest triangle: the least that
- * vxm_triangle_distance2 gives, in all builds to the bit, where that is below most^2; elsewhere
+ * vxm_triangle_distance2 gives, in all builds to the bit, where that is below max_distance^2; elsewhere
  * something that is no less than that.
  *
  * @param squares VXM_TILE rows of VXM_TILE for each of VXM_TILE slices, of which the points are filled
- * @return false if no point is nearer than `most`; then there are no squares
+ * @return false if no point is nearer than `max_distance`; then there are no squares
  */
 typedef bool vxm_distance_bvh_tile_fn(vxm_search *search, double *squares, const vxm_point_block *tile);
 

@@ -8,7 +8,9 @@
 
 enum { VXM_PACK = 8, VXM_DISTANCE_BVH_LEVELS = 11 /**< 8^11 triangles are more than 2^32 */ };
 
-/** Eight triangles as floats, as seen from a point among them: for telling which cannot be the nearest. */
+/** A leaf: eight triangles as floats, as seen from a point among them, for telling which cannot be the
+ * nearest.
+ */
 typedef struct vxm_pack {
   _Alignas(64) double origin[3];
   float reach; /**< from the origin, of anything in here */
@@ -17,18 +19,18 @@ typedef struct vxm_pack {
   float leg[2][2][VXM_PACK], leg_length[2][VXM_PACK];
 } vxm_pack;
 
-/** The boxes of up to eight children, as seen from a point among them. */
-typedef struct vxm_family {
+/** An inner node: the boxes of up to eight children, as seen from a point among them. */
+typedef struct vxm_bvh_node {
   _Alignas(64) double origin[3];
   float reach;
   uint32_t valid; /**< a bit for each child */
   float low[3][VXM_PACK], high[3][VXM_PACK];
-} vxm_family;
+} vxm_bvh_node;
 
 /**
  * Triangles in an order in which those of a pack, and packs side by side, are near each other. Child c of
- * family f of level 0 is pack 8 f + c; of a level above, family 8 f + c of the level below. The last level
- * has one family, the root; there are at least two levels.
+ * node f of level 0 is pack 8 f + c; of a level above, node 8 f + c of the level below. The last level
+ * has one node, the root; there are at least two levels.
  */
 struct vxm_distance_bvh {
   vxm_context *context;
@@ -36,19 +38,20 @@ struct vxm_distance_bvh {
   vxm_distance_triangle *triangles;
   vxm_pack *packs;
   int levels;
-  vxm_family *families[VXM_DISTANCE_BVH_LEVELS];
-  size_t family_count[VXM_DISTANCE_BVH_LEVELS];
+  vxm_bvh_node *nodes[VXM_DISTANCE_BVH_LEVELS];
+  size_t node_count[VXM_DISTANCE_BVH_LEVELS];
 };
 
-/** Some children of a family. */
-typedef struct vxm_some {
-  uint32_t family, mask;
-} vxm_some;
+/** Those children of a node that have a bit in `mask`. */
+typedef struct vxm_bvh_children {
+  uint32_t node, mask;
+} vxm_bvh_children;
 
 struct vxm_search {
   const vxm_distance_bvh *tree;
-  size_t near;             /**< a triangle near the points looked at last */
-  vxm_some *wide, *narrow; /**< families of levels 1 and 0 that a tile, and a block of it, have to look at */
+  size_t near;                   /**< a triangle near the points looked at last */
+  vxm_bvh_children *tile_nodes;  /**< of level 1: what a tile has to look at */
+  vxm_bvh_children *block_nodes; /**< of level 0: what a block of it has to look at */
 };
 
 #endif

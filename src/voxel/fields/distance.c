@@ -69,7 +69,7 @@ static void fill_row(const measure *m, float *values, uint64_t inside, int count
 }
 
 static vxm_point_block tile_of(const measure *m, size_t task) {
-  vxm_point_block tile = {.most = m->search.band};
+  vxm_point_block tile = {.max_distance = m->search.band};
   int64_t row = (int64_t)task / m->across;
   const int64_t first[3] = {(int64_t)task % m->across * VXM_TILE, row % m->down * VXM_TILE,
                             m->begin + row / m->down * VXM_TILE};
@@ -195,15 +195,15 @@ static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
 static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
   vxm_context *context = m->context;
   vxm_error local = VXM_ERROR_INIT;
-  if (m->search.nearest) {
+  if (m->search.tree) {
     m->searches = vxm_calloc(context, (size_t)workers, sizeof *m->searches, &local);
     m->squares = vxm_alloc(context, (size_t)workers * VXM_TILE_POINTS, sizeof *m->squares, &local);
   }
   m->tallies = vxm_calloc(context, (size_t)workers, sizeof *m->tallies, &local);
   for (int w = 0; w < workers && local.code == VXM_OK; w++) {
     m->tallies[w] = (tally){.least = INFINITY, .greatest = -INFINITY};
-    if (m->search.nearest)
-      vxm_search_create(&m->searches[w], m->search.nearest, &local);
+    if (m->search.tree)
+      vxm_search_create(&m->searches[w], m->search.tree, &local);
   }
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
@@ -282,8 +282,8 @@ vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report 
   m.way = way;
   status = vxm_distance_search_create(&m.search, context, model->analysis.soup, space, target->layout,
                                       options, error);
-  if (status == VXM_OK && m.search.families)
-    status = vxm_distance_band_create(&m.near, m.search.families, vxm_context_threads(context), error);
+  if (status == VXM_OK && m.search.clusters)
+    status = vxm_distance_band_create(&m.near, m.search.clusters, vxm_context_threads(context), error);
   if (status == VXM_OK)
     status = run_planned(&m, target, report, model, &plan, error);
   vxm_distance_band_destroy(m.near);

@@ -9,21 +9,21 @@
 
 typedef struct vxm_distance_band vxm_distance_band;
 
-/** Lists the families that reach a tile out of those that reach its row of tiles; returns how many. */
-size_t vxm_distance_band_near(const vxm_band_families *families, uint32_t *near, const uint32_t *entries,
+/** Lists the clusters that reach a tile out of those that reach its row of tiles; returns how many. */
+size_t vxm_distance_band_near(const vxm_band_clusters *clusters, uint32_t *near, const uint32_t *entries,
                               size_t count, const vxm_band_tile *tile);
 
 /**
- * Makes what distances within a band are measured with; the families must outlive it.
+ * Makes what distances within a band are measured with; the clusters must outlive it.
  *
  * @param workers that it is measured by at most
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_distance_band_create(vxm_distance_band **out, const vxm_band_families *families, int workers,
+vxm_status vxm_distance_band_create(vxm_distance_band **out, const vxm_band_clusters *clusters, int workers,
                                     vxm_error *error);
 /** NULL is allowed. */
 void vxm_distance_band_destroy(vxm_distance_band *band);
-/** Bytes that it takes at most, the families beside, with `slices` of a grid at once. */
+/** Bytes that it takes at most, the clusters beside, with `slices` of a grid at once. */
 uint64_t vxm_distance_band_bytes(size_t triangles, int workers, const int64_t dims[3]);
 
 /**

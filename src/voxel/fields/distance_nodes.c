@@ -12,7 +12,7 @@ enum { SIDE = VXM_NODE_SIDE };
 /** What a worker has of its own. */
 typedef struct scratch {
   vxm_band_tally tally;
-  vxm_band_tile *tile; /**< with families */
+  vxm_band_tile *tile; /**< with clusters */
   uint32_t *near;
   vxm_search *search; /**< with a tree */
   double *squares;
@@ -28,16 +28,16 @@ struct vxm_distance_nodes {
   vxm_distance_search search;
   const vxm_band_kernels *kernels;
   vxm_distance_bvh_tile_fn *find;
-  vxm_node_boxes boxes; /**< of the families */
+  vxm_node_boxes boxes; /**< of the clusters */
   scratch *scratches;
   int workers;
 };
 
 /* ---- A node ---- */
 
-/** The squares of a node by the families; false if none is near. */
-static bool measure_by_families(vxm_distance_nodes *n, int worker, const int64_t at[3]) {
-  const vxm_band_families *families = n->search.families;
+/** The squares of a node by the clusters; false if none is near. */
+static bool measure_by_clusters(vxm_distance_nodes *n, int worker, const int64_t at[3]) {
+  const vxm_band_clusters *clusters = n->search.clusters;
   const uint32_t *row = n->boxes.row + (size_t)worker * n->boxes.count;
   scratch *d = &n->scratches[worker];
   if (n->boxes.row_count[worker] == 0)
@@ -46,15 +46,15 @@ static bool measure_by_families(vxm_distance_nodes *n, int worker, const int64_t
     d->tile->first[a] = at[a];
     d->tile->count[a] = vxm_node_count(n->space, at, a);
   }
-  size_t found = vxm_distance_band_near(families, d->near, row, n->boxes.row_count[worker], d->tile);
+  size_t found = vxm_distance_band_near(clusters, d->near, row, n->boxes.row_count[worker], d->tile);
   if (found > 0)
-    n->kernels->measure(d->tile, families, d->near, found);
+    n->kernels->measure(d->tile, clusters, d->near, found);
   return found > 0;
 }
 
 /** The same by the tree. */
 static bool measure_by_tree(vxm_distance_nodes *n, int worker, const int64_t at[3]) {
-  vxm_point_block tile = {.most = n->search.band};
+  vxm_point_block tile = {.max_distance = n->search.band};
   for (int a = 0; a < 3; a++) {
     tile.first[a] = at[a];
     tile.count[a] = vxm_node_count(n->space, at, a);
@@ -92,8 +92,8 @@ static bool make_node(void *payload, int worker, const int64_t at[3], void *valu
                          .band = n->search.band,
                          .side = n->search.side};
   bool is_alike = !n->solid || vxm_node_bits(rows, n->solid, at);
-  bool is_near = n->search.families ? measure_by_families(n, worker, at) : measure_by_tree(n, worker, at);
-  if (is_near && n->search.families)
+  bool is_near = n->search.clusters ? measure_by_clusters(n, worker, at) : measure_by_tree(n, worker, at);
+  if (is_near && n->search.clusters)
     n->kernels->finish(&out, d->tile, &d->tally);
   else if (is_near)
     finish_tree(n, worker, at, values, rows);
@@ -108,7 +108,7 @@ static bool make_node(void *payload, int worker, const int64_t at[3], void *valu
 }
 
 vxm_node_maker vxm_distance_nodes_maker(vxm_distance_nodes *nodes) {
-  return (vxm_node_maker){.boxes = nodes->search.families ? &nodes->boxes : NULL,
+  return (vxm_node_maker){.boxes = nodes->search.clusters ? &nodes->boxes : NULL,
                           .make = make_node,
                           .payload = nodes,
                           .phase = "measuring distances"};
@@ -116,14 +116,14 @@ vxm_node_maker vxm_distance_nodes_maker(vxm_distance_nodes *nodes) {
 
 /* ---- Before and after ---- */
 
-static vxm_status list_families(vxm_distance_nodes *n, vxm_error *error) {
-  const vxm_band_families *families = n->search.families;
-  vxm_status status = vxm_node_boxes_create(&n->boxes, n->context, families->count, error);
-  for (size_t i = 0; i < families->count && status == VXM_OK; i++)
+static vxm_status list_clusters(vxm_distance_nodes *n, vxm_error *error) {
+  const vxm_band_clusters *clusters = n->search.clusters;
+  vxm_status status = vxm_node_boxes_create(&n->boxes, n->context, clusters->count, error);
+  for (size_t i = 0; i < clusters->count && status == VXM_OK; i++)
     for (int a = 0; a < 3; a++)
       for (int end = 0; end < 2; end++) {
-        bool is_empty = families->families[i].box[0][0] >= families->families[i].box[0][1];
-        n->boxes.box[i][a][end] = is_empty ? 0 : families->families[i].box[a][end];
+        bool is_empty = clusters->clusters[i].box[0][0] >= clusters->clusters[i].box[0][1];
+        n->boxes.box[i][a][end] = is_empty ? 0 : clusters->clusters[i].box[a][end];
       }
   return status;
 }
@@ -134,10 +134,10 @@ static vxm_status make_scratches(vxm_distance_nodes *n, vxm_error *error) {
   for (int w = 0; w < n->workers && local.code == VXM_OK; w++) {
     scratch *d = &n->scratches[w];
     d->tally = (vxm_band_tally){.least = INFINITY, .greatest = -INFINITY};
-    if (n->search.families) {
+    if (n->search.clusters) {
       d->tile = vxm_alloc(n->context, 1, sizeof *d->tile, &local);
       d->near = vxm_alloc(n->context, n->boxes.count, sizeof *d->near, &local);
-    } else if (vxm_search_create(&d->search, n->search.nearest, &local) == VXM_OK)
+    } else if (vxm_search_create(&d->search, n->search.tree, &local) == VXM_OK)
       d->squares = vxm_alloc(n->context, VXM_TILE_POINTS, sizeof *d->squares, &local);
   }
   if (local.code != VXM_OK)
@@ -176,8 +176,8 @@ static vxm_status make(vxm_distance_nodes *n, const vxm_distance_options *option
   if (status == VXM_OK)
     status = vxm_distance_search_create(&n->search, n->context, n->model->analysis.soup, n->space, layout,
                                         options, error);
-  if (status == VXM_OK && n->search.families)
-    status = list_families(n, error);
+  if (status == VXM_OK && n->search.clusters)
+    status = list_clusters(n, error);
   return status == VXM_OK ? make_scratches(n, error) : status;
 }
 

@@ -43,7 +43,7 @@ static void corners_of(double out[3][3], size_t triangle, const void *payload) {
 }
 
 /** For distances within a narrow band. */
-static void make_families(vxm_distance_search *s, vxm_error *error) {
+static void make_clusters(vxm_distance_search *s, vxm_error *error) {
   vxm_band_grid grid = {.band = s->band};
   for (int a = 0; a < 3; a++) {
     grid.axes[a] = s->axes[a];
@@ -53,7 +53,7 @@ static void make_families(vxm_distance_search *s, vxm_error *error) {
   const vxm_band_soup soup = {(const double(*)[3])s->places,
                               (const uint32_t(*)[3])(const void *)s->surface->corners,
                               s->surface->triangle_count};
-  vxm_band_families_create(&s->families, s->context, &soup, &grid, error);
+  vxm_band_clusters_create(&s->clusters, s->context, &soup, &grid, error);
 }
 
 static vxm_status take_triangles(vxm_distance_search *s, bool is_narrow, vxm_error *error) {
@@ -63,9 +63,9 @@ static vxm_status take_triangles(vxm_distance_search *s, bool is_narrow, vxm_err
   if (s->places) {
     vxm_parallel(context, PLACE_TASKS, place_vertices, s);
     if (is_narrow)
-      make_families(s, &local);
+      make_clusters(s, &local);
     else
-      vxm_distance_bvh_create(&s->nearest, context, s->surface->triangle_count, corners_of, s, &local);
+      vxm_distance_bvh_create(&s->tree, context, s->surface->triangle_count, corners_of, s, &local);
   }
   if (!is_narrow) {
     vxm_free(context, s->places);
@@ -90,9 +90,9 @@ vxm_status vxm_distance_search_create(vxm_distance_search *out, vxm_context *con
 }
 
 void vxm_distance_search_destroy(vxm_distance_search *search) {
-  vxm_band_families_destroy(search->families);
+  vxm_band_clusters_destroy(search->clusters);
   vxm_free(search->context, search->places);
-  vxm_distance_bvh_destroy(search->nearest);
+  vxm_distance_bvh_destroy(search->tree);
   vxm_surface_destroy(search->surface);
   *search = (vxm_distance_search){.context = search->context};
 }
@@ -100,7 +100,7 @@ void vxm_distance_search_destroy(vxm_distance_search *search) {
 uint64_t vxm_distance_search_bytes(const vxm_soup *soup, const vxm_distance_options *options,
                                    size_t *triangles) {
   uint64_t held = vxm_surface_held_bytes(soup, triangles) + soup->vertex_count * sizeof(double[3]);
-  return held + (vxm_distance_is_narrow(options) ? vxm_band_families_bytes(*triangles)
+  return held + (vxm_distance_is_narrow(options) ? vxm_band_clusters_bytes(*triangles)
                                                  : vxm_distance_bvh_bytes(*triangles));
 }
 

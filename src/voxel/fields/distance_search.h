@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What distances to the faces of a mesh are measured with: families of triangles for a narrow band, a tree
+/** What distances to the faces of a mesh are measured with: clusters of triangles for a narrow band, a tree
  * for a wider one and for all of space. Both give the same squares to the bit. */
 #ifndef VXM_VOXEL_FIELDS_DISTANCE_SEARCH_H
 #define VXM_VOXEL_FIELDS_DISTANCE_SEARCH_H
@@ -16,9 +16,9 @@ typedef struct vxm_distance_search {
   int axes[3];                 /**< of the values: the one that varies fastest, the next, the slices */
   double side;                 /**< the longest of a voxel, model units: lengths are counted in it */
   double band;                 /**< INFINITY = none */
-  double (*places)[3];         /**< of the vertices, for families; else while triangles are taken */
-  vxm_band_families *families; /**< of a narrow band, else NULL */
-  vxm_distance_bvh *nearest;   /**< without one */
+  double (*places)[3];         /**< of the vertices, for clusters; else while triangles are taken */
+  vxm_band_clusters *clusters; /**< of a narrow band, else NULL */
+  vxm_distance_bvh *tree;      /**< without one */
 } vxm_distance_search;
 
 /**
@@ -38,7 +38,7 @@ void vxm_distance_search_destroy(vxm_distance_search *search);
 uint64_t vxm_distance_search_bytes(const vxm_soup *soup, const vxm_distance_options *options,
                                    size_t *triangles);
 
-/** Whether a band is one that families are for. */
+/** Whether a band is one that clusters are for. */
 bool vxm_distance_is_narrow(const vxm_distance_options *options);
 /** The distance of voxels beyond the band, in model units; INFINITY where there is none. */
 float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space);

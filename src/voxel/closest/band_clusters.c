@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "voxel/closest/band_families.h"
+#include "voxel/closest/band_clusters.h"
 #include "base/bits.h"
 #include "base/threads.h"
 #include "mesh/sort.h"
@@ -13,15 +13,15 @@ enum { SLICES = 64 /**< of triangles, for the threads */ };
 /** A length in floats is off by less than this part of the lengths that it is made from: ninety-six
  * roundings, where some eighty are made, what flat triangles lose included. */
 static const double rounding = 96 * 0x1p-24;
-/** Bricks of voxels reach beyond a family's box by as much. */
+/** Bricks of voxels reach beyond a cluster's box by as much. */
 static const double beyond[3] = {3, 1, 1};
 
 typedef struct builder {
-  vxm_band_families *made;
+  vxm_band_clusters *made;
   const vxm_band_soup *soup;
   const vxm_band_kernels *kernels;
   uint64_t *keys, *scratch; /**< of the triangles: where they lie, and which they are */
-  uint32_t *starts;         /**< of each slice, from its first triangle on: where its families begin */
+  uint32_t *starts;         /**< of each slice, from its first triangle on: where its clusters begin */
   size_t counts[SLICES + 1];
 } builder;
 
@@ -52,47 +52,47 @@ static void find_starts(size_t slice, int worker, void *payload) {
       b->kernels->find_starts(b->starts + begin, b->soup, b->keys, begin, slice_begin(b, slice + 1));
 }
 
-/* ---- Families ---- */
+/* ---- Clusters ---- */
 
 /** The voxels that a box grown by the band holds. */
-static void find_voxels(vxm_band_family *f, const vxm_band_grid *grid) {
+static void find_voxels(vxm_band_cluster *cluster, const vxm_band_grid *grid) {
   for (int a = 0; a < 3; a++) {
     int axis = grid->axes[a];
-    double reach = (double)f->half[a] + grid->band, most = (double)grid->dims[a];
-    double low = (f->origin[axis] - reach) / grid->step[axis] - 0.5,
-           high = (f->origin[axis] + reach) / grid->step[axis] - 0.5;
+    double reach = (double)cluster->half[a] + grid->band, most = (double)grid->dims[a];
+    double low = (cluster->origin[axis] - reach) / grid->step[axis] - 0.5,
+           high = (cluster->origin[axis] + reach) / grid->step[axis] - 0.5;
     /* Rounded up, and down: what lies behind the point is dropped. */
-    f->box[a][0] = (int32_t)least_of(most_of(low - 2e-6 + 1, 0), most);
-    f->box[a][1] = (int32_t)least_of(most_of(high + 1e-6 + 1, 0), most);
+    cluster->box[a][0] = (int32_t)least_of(most_of(low - 2e-6 + 1, 0), most);
+    cluster->box[a][1] = (int32_t)least_of(most_of(high + 1e-6 + 1, 0), most);
   }
   for (int a = 0; a < 3; a++)
-    if (f->box[a][0] >= f->box[a][1])
-      f->box[0][0] = f->box[0][1] = 0;
+    if (cluster->box[a][0] >= cluster->box[a][1])
+      cluster->box[0][0] = cluster->box[0][1] = 0;
 }
 
-static void make_family(const builder *b, size_t at, size_t first, size_t end) {
-  vxm_band_families *made = b->made;
+static void make_cluster(const builder *b, size_t at, size_t first, size_t end) {
+  vxm_band_clusters *made = b->made;
   const vxm_band_grid *grid = &made->grid;
-  vxm_band_family *f = &made->families[at];
+  vxm_band_cluster *cluster = &made->clusters[at];
   double reach2 = 0;
-  f->first = (uint32_t)first;
-  f->count = (uint32_t)(end - first);
-  double reach = b->kernels->make_family(f, &made->triangles[first], b->soup, &b->keys[first], grid);
+  cluster->first = (uint32_t)first;
+  cluster->count = (uint32_t)(end - first);
+  double reach = b->kernels->make_cluster(cluster, &made->triangles[first], b->soup, &b->keys[first], grid);
   for (int a = 0; a < 3; a++) {
-    double far = (double)f->half[a] + grid->band + (beyond[a] + 2) * grid->step[grid->axes[a]];
+    double far = (double)cluster->half[a] + grid->band + (beyond[a] + 2) * grid->step[grid->axes[a]];
     reach2 += far * far;
   }
   double off = (reach + sqrt(reach2)) * rounding;
-  f->room = (float)(off * (2 * (grid->band + 1) + 3 * off));
+  cluster->margin = (float)(off * (2 * (grid->band + 1) + 3 * off));
   for (int a = 0; a < 3; a++) {
-    f->low[a] -= (float)off;
-    f->high[a] += (float)off;
-    f->half[a] += (float)off;
+    cluster->low[a] -= (float)off;
+    cluster->high[a] += (float)off;
+    cluster->half[a] += (float)off;
   }
-  find_voxels(f, grid);
+  find_voxels(cluster, grid);
 }
 
-static void make_families(size_t slice, int worker, void *payload) {
+static void make_clusters(size_t slice, int worker, void *payload) {
   (void)worker;
   const builder *b = payload;
   size_t begin = slice_begin(b, slice), end = slice_begin(b, slice + 1), count = b->counts[slice];
@@ -101,19 +101,19 @@ static void make_families(size_t slice, int worker, void *payload) {
     at += b->counts[s];
   const uint32_t *starts = b->starts + begin;
   for (size_t n = 0; n < count; n++)
-    make_family(b, at + n, starts[n], n + 1 < count ? starts[n + 1] : end);
+    make_cluster(b, at + n, starts[n], n + 1 < count ? starts[n + 1] : end);
 }
 
 /* ---- All of them ---- */
 
-uint64_t vxm_band_families_bytes(size_t count) {
+uint64_t vxm_band_clusters_bytes(size_t count) {
   uint64_t triangle = sizeof(vxm_band_triangle) + sizeof(uint32_t) + 2 * sizeof(uint64_t);
-  return count * (triangle + sizeof(vxm_band_family)) + sizeof(vxm_band_families) + 4096;
+  return count * (triangle + sizeof(vxm_band_cluster)) + sizeof(vxm_band_clusters) + 4096;
 }
 
-/** Fails by its error; what could be had is freed with the families. */
+/** Fails by its error; what could be had is freed with the clusters. */
 static void allocate(builder *b, vxm_error *error) {
-  vxm_band_families *made = b->made;
+  vxm_band_clusters *made = b->made;
   vxm_context *context = made->context;
   size_t count = made->triangle_count;
   made->triangles = vxm_alloc(context, count, sizeof *made->triangles, error);
@@ -123,7 +123,7 @@ static void allocate(builder *b, vxm_error *error) {
 }
 
 static vxm_status build(builder *b, vxm_error *error) {
-  vxm_band_families *made = b->made;
+  vxm_band_clusters *made = b->made;
   vxm_context *context = made->context;
   vxm_status status = vxm_parallel_asked(context, SLICES, make_keys, b, error);
   if (status != VXM_OK)
@@ -134,13 +134,13 @@ static vxm_status build(builder *b, vxm_error *error) {
     return status;
   for (size_t s = 0; s < SLICES; s++)
     made->count += b->counts[s];
-  made->families = vxm_alloc(context, made->count, sizeof *made->families, error);
-  if (!made->families)
+  made->clusters = vxm_alloc(context, made->count, sizeof *made->clusters, error);
+  if (!made->clusters)
     return error->code;
-  return vxm_parallel_asked(context, SLICES, make_families, b, error);
+  return vxm_parallel_asked(context, SLICES, make_clusters, b, error);
 }
 
-vxm_status vxm_band_families_create(vxm_band_families **out, vxm_context *context, const vxm_band_soup *soup,
+vxm_status vxm_band_clusters_create(vxm_band_clusters **out, vxm_context *context, const vxm_band_soup *soup,
                                     const vxm_band_grid *grid, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   builder b = {.made = vxm_calloc(context, 1, sizeof *b.made, &local),
@@ -160,17 +160,17 @@ vxm_status vxm_band_families_create(vxm_band_families **out, vxm_context *contex
   vxm_free(context, b.keys);
   vxm_free(context, b.starts);
   if (local.code != VXM_OK) {
-    vxm_band_families_destroy(b.made);
+    vxm_band_clusters_destroy(b.made);
     vxm_error_pass(error, &local);
   }
   return local.code;
 }
 
-void vxm_band_families_destroy(vxm_band_families *families) {
-  if (!families)
+void vxm_band_clusters_destroy(vxm_band_clusters *clusters) {
+  if (!clusters)
     return;
-  vxm_context *context = families->context;
-  vxm_free(context, families->families);
-  vxm_free(context, families->triangles);
-  vxm_free(context, families);
+  vxm_context *context = clusters->context;
+  vxm_free(context, clusters->clusters);
+  vxm_free(context, clusters->triangles);
+  vxm_free(context, clusters);
 }
