@@ -33,9 +33,9 @@ static uint64_t saturating_sum(uint64_t a, uint64_t b) {
 /** Slices that fit `left` bytes, and what they take. */
 static int64_t slices_in(const plan *p, const vxm_model *model, const vxm_space *space, uint64_t left,
                          bool worst, uint64_t *memory) {
-  vxm_memory_need demand = vxm_model_memory_need(model, space, &p->shape, worst, false);
-  uint64_t slice = p->shape.slice_words * sizeof(uint64_t), each = slice * (uint64_t)demand.windows;
-  uint64_t fixed = saturating_sum(demand.fixed, p->file.bytes);
+  vxm_memory_need need = vxm_model_memory_need(model, space, &p->shape, worst, false);
+  uint64_t slice = p->shape.slice_words * sizeof(uint64_t), each = slice * (uint64_t)need.windows;
+  uint64_t fixed = saturating_sum(need.fixed, p->file.bytes);
   uint64_t room = left > fixed ? (left - fixed) / each : 0, most = window_bytes_max / slice;
   int64_t slices = (int64_t)(room < most ? room : most);
   slices -= slices > 4 ? slices % 4 : 0; /* whole bricks */
@@ -61,9 +61,9 @@ static vxm_status plan_windows(plan *p, const vxm_model *model, const vxm_space 
 static void plan_whole(plan *p, const vxm_model *model, const vxm_space *space) {
   uint64_t least = UINT64_MAX;
   for (int worst = 0; worst < 2; worst++) {
-    vxm_memory_need demand = vxm_model_memory_need(model, space, &p->shape, worst, false);
-    uint64_t memory = saturating_sum(demand.fixed + p->file.gather_bytes,
-                                     (uint64_t)demand.windows * vxm_space_bytes(space));
+    vxm_memory_need need = vxm_model_memory_need(model, space, &p->shape, worst, false);
+    uint64_t memory =
+        saturating_sum(need.fixed + p->file.gather_bytes, (uint64_t)need.windows * vxm_space_bytes(space));
     least = memory < least ? memory : least;
   }
   p->slices = p->shape.slow_dim;

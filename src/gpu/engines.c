@@ -307,14 +307,14 @@ vxm_status vxm_engines_make(vxm_engine **out, vxm_context *context, const char *
                                            : vxm_engines_make_one(out, held, name, options, error);
   if (status == VXM_OK) {
     (*out)->info.size = sizeof(*out)->info;
-    atomic_init(&(*out)->holders, 1);
+    atomic_init(&(*out)->reference_count, 1);
   } else
     vxm_context_release(held);
   return status;
 }
 
 void vxm_engine_destroy(vxm_engine *engine) {
-  if (!engine || atomic_fetch_sub(&engine->holders, 1) > 1)
+  if (!engine || atomic_fetch_sub(&engine->reference_count, 1) > 1)
     return;
   vxm_context *context = engine->context;
   if (engine->ops)

@@ -341,10 +341,10 @@ vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, con
   return b.error.code;
 }
 
-void vxm_containment_destroy(vxm_containment *nesting) {
-  if (!nesting->context)
+void vxm_containment_destroy(vxm_containment *containment) {
+  if (!containment->context)
     return;
-  vxm_free(nesting->context, nesting->volume);
-  vxm_free(nesting->context, nesting->parent);
-  *nesting = (vxm_containment){0};
+  vxm_free(containment->context, containment->volume);
+  vxm_free(containment->context, containment->parent);
+  *containment = (vxm_containment){0};
 }

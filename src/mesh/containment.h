@@ -28,6 +28,6 @@ typedef struct vxm_containment {
  */
 vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, const uint32_t *face_labels,
                                  size_t count, const uint8_t *solid, vxm_error *error);
-void vxm_containment_destroy(vxm_containment *nesting);
+void vxm_containment_destroy(vxm_containment *containment);
 
 #endif

@@ -50,12 +50,13 @@ static vxm_status run_until_quiet(vxm_repair_state *state, vxm_error *error) {
 static vxm_status settle_again(vxm_repair_state *state, bool *changed, vxm_error *error) {
   int64_t before = count_round(state);
   bool turned;
-  vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
+  vxm_status status =
+      state->provenance ? vxm_provenance_start(state->provenance, state->soup, error) : VXM_OK;
   if (status == VXM_OK)
     status = run_until_quiet(state, error);
   *changed = status == VXM_OK && count_round(state) > before;
-  if (status == VXM_OK && state->track)
-    status = vxm_provenance_settle(state->track, state->soup, error);
+  if (status == VXM_OK && state->provenance)
+    status = vxm_provenance_settle(state->provenance, state->soup, error);
   return status == VXM_OK && *changed ? vxm_pass_orientation(state, &turned, error) : status;
 }
 
@@ -79,11 +80,12 @@ static vxm_status separate_until_quiet(vxm_repair_state *state, bool *changed, v
 
 /** Runs a pass that moves or merges vertices, so that the account of parts sees how far. */
 static vxm_status run_followed(vxm_repair_state *state, vxm_pass_fn pass, bool *changed, vxm_error *error) {
-  vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
+  vxm_status status =
+      state->provenance ? vxm_provenance_start(state->provenance, state->soup, error) : VXM_OK;
   if (status == VXM_OK)
     status = pass(state, changed, error);
-  if (status == VXM_OK && state->track)
-    status = vxm_provenance_settle(state->track, state->soup, error);
+  if (status == VXM_OK && state->provenance)
+    status = vxm_provenance_settle(state->provenance, state->soup, error);
   return status;
 }
 
@@ -168,13 +170,13 @@ static vxm_status begin_again(vxm_repair_state *state, const vxm_before_union *b
   vxm_status status = vxm_before_union_again(state, before, error);
   if (bits == 0)
     return status;
-  if (status == VXM_OK && state->track)
-    status = vxm_provenance_start(state->track, state->soup, error);
+  if (status == VXM_OK && state->provenance)
+    status = vxm_provenance_start(state->provenance, state->soup, error);
   if (status != VXM_OK)
     return status;
   vxm_snap_to_lattice(state, bits);
-  if (state->track)
-    status = vxm_provenance_settle(state->track, state->soup, error);
+  if (state->provenance)
+    status = vxm_provenance_settle(state->provenance, state->soup, error);
   if (status == VXM_OK)
     status = vxm_pass_exact_weld(state, &more, error);
   return status == VXM_OK ? settle_again(state, &more, error) : status;
@@ -263,8 +265,8 @@ static void count_turned(vxm_repair_state *state) {
       continue;
     vxm_repair_state_note_face(state, VXM_PASS_ORIENTATION, f);
     state->counts[VXM_PASS_ORIENTATION]++;
-    if (state->track && state->soup->face_parts)
-      vxm_provenance_turn(state->track, state->soup->face_parts[f]);
+    if (state->provenance && state->soup->face_parts)
+      vxm_provenance_turn(state->provenance, state->soup->face_parts[f]);
   }
 }
 
@@ -301,10 +303,10 @@ vxm_status vxm_pipeline_run(vxm_repair_state *state, const vxm_soup *in, bool *a
     status = look_for_lost(state, in, again, error);
   if (status != VXM_OK || *again)
     return status;
-  if (state->track && state->options.max_change > 0)
-    status = vxm_provenance_refer(state->track, state->soup, error);
-  if (status == VXM_OK && state->track)
-    status = vxm_provenance_settle(state->track, state->soup, error);
+  if (state->provenance && state->options.max_change > 0)
+    status = vxm_provenance_refer(state->provenance, state->soup, error);
+  if (status == VXM_OK && state->provenance)
+    status = vxm_provenance_settle(state->provenance, state->soup, error);
   if (status == VXM_OK)
     status = run_further(state, error);
   if (status == VXM_OK && state->divides)

@@ -34,7 +34,7 @@ static bool keeps_account(const vxm_repair_options *options) {
 /** Gives the faces of the copy their parts where nothing else does. */
 static vxm_status name_guarded(vxm_repair_state *state, const vxm_soup *in, vxm_error *error) {
   vxm_status status = VXM_OK;
-  if (!state->guards || state->track)
+  if (!state->guards || state->provenance)
     return status;
   state->soup->face_parts =
       vxm_repair_state_scratch(state, in->face_count, sizeof *state->soup->face_parts, &status, error);
@@ -50,21 +50,21 @@ static vxm_status repair_copy(vxm_repair_state *state, const vxm_soup *in, bool 
   if (state->gone)
     state->used = vxm_repair_state_scratch(state, vertices, sizeof *state->used, &status, error);
   if (state->used && keeps_account(&state->options))
-    status = vxm_provenance_create(&state->track, state->soup, in, error);
+    status = vxm_provenance_create(&state->provenance, state->soup, in, error);
   if (state->used && status == VXM_OK)
     status = name_guarded(state, in, error);
   if (state->used && status == VXM_OK)
     status = vxm_pipeline_run(state, in, again, error);
-  if (status == VXM_OK && !*again && state->track)
-    status = vxm_provenance_finish(state->track, state->soup, state->options.max_change, error);
+  if (status == VXM_OK && !*again && state->provenance)
+    status = vxm_provenance_finish(state->provenance, state->soup, state->options.max_change, error);
   if (status == VXM_OK && !*again && state->options.intersections)
-    status = vxm_provenance_count_crossings(state->track, state->soup, state->crossings, error);
-  if (!state->track && state->soup->face_parts) { /* they were for the guard alone */
+    status = vxm_provenance_count_crossings(state->provenance, state->soup, state->crossings, error);
+  if (!state->provenance && state->soup->face_parts) { /* they were for the guard alone */
     vxm_free(state->context, state->soup->face_parts);
     state->soup->face_parts = NULL;
   }
   vxm_repair_state_touch(state);
-  vxm_provenance_destroy(state->track);
+  vxm_provenance_destroy(state->provenance);
   vxm_free(state->context, state->turned);
   vxm_free(state->context, state->used);
   vxm_free(state->context, state->gone);

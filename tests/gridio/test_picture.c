@@ -55,8 +55,8 @@ static void test_rays(void **state) {
         p[a] = (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[a]);
       vxm_grid_set(grid, p[0], p[1], p[2], true);
     }
-    vxm_occupancy_mips pyramid;
-    assert_int_equal(vxm_occupancy_mips_create(&pyramid, grid, NULL), VXM_OK);
+    vxm_occupancy_mips mips;
+    assert_int_equal(vxm_occupancy_mips_create(&mips, grid, NULL), VXM_OK);
     for (int r = 0; r < 40; r++) {
       double o[3], d[3];
       for (int a = 0; a < 3; a++) {
@@ -64,14 +64,14 @@ static void test_rays(void **state) {
         d[a] = vxm_rng_unit(&rng) * (double)space.dims[a] - o[a]; /* toward the grid */
       }
       vxm_hit fast, slow;
-      bool hit = vxm_raycast(&fast, &pyramid, o, d);
+      bool hit = vxm_raycast(&fast, &mips, o, d);
       assert_int_equal(hit, slow_trace(&slow, grid, o, d));
       if (hit) {
         assert_memory_equal(fast.voxel, slow.voxel, sizeof fast.voxel);
         assert_true(fabs(fast.t - slow.t) < 1e-9);
       }
     }
-    vxm_occupancy_mips_destroy(&pyramid);
+    vxm_occupancy_mips_destroy(&mips);
     vxm_grid_destroy(grid);
   }
   vxm_context_destroy(context);
@@ -83,27 +83,27 @@ static void test_rays_along_axes(void **state) {
   vxm_context *context = context_of(1);
   vxm_grid *grid = new_grid(context, unit_space(70, 30, 20));
   vxm_grid_set(grid, 66, 10, 5, true);
-  vxm_occupancy_mips pyramid;
-  assert_int_equal(vxm_occupancy_mips_create(&pyramid, grid, NULL), VXM_OK);
+  vxm_occupancy_mips mips;
+  assert_int_equal(vxm_occupancy_mips_create(&mips, grid, NULL), VXM_OK);
   for (int axis = 0; axis < 3; axis++)
     for (int forward = 0; forward < 2; forward++) {
       double o[3] = {66.5, 10.5, 5.5}, d[3] = {0, 0, 0};
       o[axis] = forward ? -3 : 200;
       d[axis] = forward ? 2 : -2;
       vxm_hit hit;
-      assert_true(vxm_raycast(&hit, &pyramid, o, d));
+      assert_true(vxm_raycast(&hit, &mips, o, d));
       assert_true(hit.axis == axis && hit.positive == !forward && hit.voxel[0] == 66);
       o[(axis + 1) % 3] += 1;
-      assert_false(vxm_raycast(&hit, &pyramid, o, d));
+      assert_false(vxm_raycast(&hit, &mips, o, d));
       o[(axis + 1) % 3] = -1;
-      assert_false(vxm_raycast(&hit, &pyramid, o, d));
+      assert_false(vxm_raycast(&hit, &mips, o, d));
     }
-  vxm_occupancy_mips_destroy(&pyramid);
+  vxm_occupancy_mips_destroy(&mips);
   vxm_grid_destroy(grid);
   vxm_context_destroy(context);
 }
 
-/** The pyramid counts right, to rounding, and is 0 only where all is clear. */
+/** The mips counts right, to rounding, and is 0 only where all is clear. */
 static void test_pyramid(void **state) {
   (void)state;
   vxm_context *context = context_of(2);
@@ -112,9 +112,9 @@ static void test_pyramid(void **state) {
     vxm_grid *grid = new_grid(context, random_space(&rng, 70, false));
     fill_random(grid, &rng, round % KINDS);
     const int64_t *n = grid->space.dims;
-    vxm_occupancy_mips pyramid;
-    assert_int_equal(vxm_occupancy_mips_create(&pyramid, grid, NULL), VXM_OK);
-    for (int l = 0; l < pyramid.levels; l++) {
+    vxm_occupancy_mips mips;
+    assert_int_equal(vxm_occupancy_mips_create(&mips, grid, NULL), VXM_OK);
+    for (int l = 0; l < mips.levels; l++) {
       int64_t side = INT64_C(4) << l;
       for (int64_t k = 0; k < n[2]; k += side)
         for (int64_t j = 0; j < n[1]; j += side)
@@ -123,11 +123,11 @@ static void test_pyramid(void **state) {
             for (int64_t v = 0; v < side * side * side; v++)
               count += vxm_grid_get(grid, i + v % side, j + v / side % side, k + v / side / side);
             double part = 255.0 * (double)count / (double)(side * side * side);
-            uint8_t cell = vxm_occupancy_mips_cell(&pyramid, l, (int64_t[3]){i, j, k});
+            uint8_t cell = vxm_occupancy_mips_cell(&mips, l, (int64_t[3]){i, j, k});
             assert_true(cell >= part - 1e-9 && cell < part + l + 1 && (cell == 0) == (count == 0));
           }
     }
-    vxm_occupancy_mips_destroy(&pyramid);
+    vxm_occupancy_mips_destroy(&mips);
     vxm_grid_destroy(grid);
   }
   vxm_context_destroy(context);
@@ -146,7 +146,7 @@ static void test_tiles(void **state) {
       vxm_grid_set(grid, (int64_t)vxm_rng_below(&rng, 90), (int64_t)vxm_rng_below(&rng, 50),
                    (int64_t)vxm_rng_below(&rng, 70), true);
     vxm_scene scene = {.grid = grid, .step = {1, 1, 1}};
-    assert_int_equal(vxm_occupancy_mips_create(&scene.pyramid, grid, NULL), VXM_OK);
+    assert_int_equal(vxm_occupancy_mips_create(&scene.mips, grid, NULL), VXM_OK);
     double angle = vxm_rng_unit(&rng) * 6;
     vxm_camera cam = {.width = 100, .height = 77, .pixel = 0.01, .top = {{0, 0, 1}}};
     cam.back = vxm_ray_vec3_of(cos(angle), sin(angle), 0);
@@ -161,12 +161,12 @@ static void test_tiles(void **state) {
       vxm_hit hit;
       double depth = (double)vxm_tiles_depth(&tiles, x, y);
       empty += isinf(depth) != 0;
-      if (vxm_raycast(&hit, &scene.pyramid, cam.eye.c, direction.c))
+      if (vxm_raycast(&hit, &scene.mips, cam.eye.c, direction.c))
         assert_true(depth <= -hit.t * vxm_ray_vec3_dot(direction, cam.back));
     }
     assert_true(round < 4 || empty > 1500);
     vxm_tiles_destroy(&tiles);
-    vxm_occupancy_mips_destroy(&scene.pyramid);
+    vxm_occupancy_mips_destroy(&scene.mips);
     vxm_grid_destroy(grid);
   }
   vxm_context_destroy(context);

@@ -2,7 +2,7 @@
 #include "gpu/common/oversized_triangles.h"
 #include "voxel/parity/kernels.h"
 
-/* ---- Which are far ---- */
+/* ---- Which are oversized ---- */
 
 /** Differences of triangles that the shaders do: shaders/job.glsl, shaders/lattice.cl. */
 static const int64_t reach = INT64_C(1) << 20;
@@ -26,7 +26,7 @@ static bool is_far(const vxm_point *a, const vxm_point *b, const vxm_point *c) {
   return false;
 }
 
-/** Whether all points lie so close together that no triangle can be far. */
+/** Whether all points lie so close together that no triangle can be oversized. */
 static bool are_all_near(const vxm_snapped_points *placed, size_t count) {
   int32_t low[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, high[3] = {INT32_MIN, INT32_MIN, INT32_MIN};
   if (placed->wide)
@@ -43,9 +43,9 @@ static bool are_all_near(const vxm_snapped_points *placed, size_t count) {
   return true;
 }
 
-vxm_status vxm_oversized_find(vxm_oversized *far, const vxm_triangle_set *triangles,
+vxm_status vxm_oversized_find(vxm_oversized *oversized, const vxm_triangle_set *triangles,
                               const vxm_snapped_points *placed, vxm_error *error) {
-  far->count = 0;
+  oversized->count = 0;
   if (are_all_near(placed, triangles->point_count))
     return VXM_OK;
   vxm_status status = VXM_OK;
@@ -55,18 +55,18 @@ vxm_status vxm_oversized_find(vxm_oversized *far, const vxm_triangle_set *triang
       p[c] = vxm_snapped_points_at(placed, triangles->corners[f][c]);
     if (!is_far(&p[0], &p[1], &p[2]))
       continue;
-    status = vxm_grow(far->context, (void **)&far->triangles, &far->capacity, far->count + 1,
-                      sizeof *far->triangles, error);
+    status = vxm_grow(oversized->context, (void **)&oversized->triangles, &oversized->capacity,
+                      oversized->count + 1, sizeof *oversized->triangles, error);
     if (status == VXM_OK)
-      far->triangles[far->count++] = (uint32_t)f;
+      oversized->triangles[oversized->count++] = (uint32_t)f;
   }
   return status;
 }
 
-vxm_status vxm_oversized_surface_find(vxm_oversized_surface *far, const vxm_surface *surface,
+vxm_status vxm_oversized_surface_find(vxm_oversized_surface *oversized, const vxm_surface *surface,
                                       vxm_error *error) {
   vxm_status status = VXM_OK;
-  far->count = 0;
+  oversized->count = 0;
   for (size_t t = 0; t < surface->triangle_count && status == VXM_OK; t++) {
     const uint32_t *corner = surface->corners + 3 * t;
     vxm_point p[3];
@@ -74,21 +74,21 @@ vxm_status vxm_oversized_surface_find(vxm_oversized_surface *far, const vxm_surf
       p[c] = vxm_surface_at(surface, corner[c]);
     if (!is_far(&p[0], &p[1], &p[2]))
       continue;
-    status = vxm_grow(far->context, (void **)&far->corners, &far->capacity, far->count + 1,
-                      sizeof *far->corners, error);
+    status = vxm_grow(oversized->context, (void **)&oversized->corners, &oversized->capacity,
+                      oversized->count + 1, sizeof *oversized->corners, error);
     for (int c = 0; c < 3 && status == VXM_OK; c++)
-      far->corners[far->count][c] = corner[c];
-    far->count += status == VXM_OK;
+      oversized->corners[oversized->count][c] = corner[c];
+    oversized->count += status == VXM_OK;
   }
   return status;
 }
 
-void vxm_oversized_destroy(vxm_oversized *far) {
-  vxm_free(far->context, far->triangles);
+void vxm_oversized_destroy(vxm_oversized *oversized) {
+  vxm_free(oversized->context, oversized->triangles);
 }
 
-void vxm_oversized_surface_destroy(vxm_oversized_surface *far) {
-  vxm_free(far->context, far->corners);
+void vxm_oversized_surface_destroy(vxm_oversized_surface *oversized) {
+  vxm_free(oversized->context, oversized->corners);
 }
 
 void vxm_oversized_narrow(int32_t (*out)[4], const vxm_point *points, size_t count) {
@@ -99,13 +99,13 @@ void vxm_oversized_narrow(int32_t (*out)[4], const vxm_point *points, size_t cou
   }
 }
 
-vxm_status vxm_oversized_surface_add(const vxm_oversized_surface *far, const vxm_surface *surface,
+vxm_status vxm_oversized_surface_add(const vxm_oversized_surface *oversized, const vxm_surface *surface,
                                      const vxm_window *window, vxm_surface_kind kind, vxm_error *error) {
-  if (far->count == 0)
+  if (oversized->count == 0)
     return VXM_OK;
   vxm_surface some = *surface;
-  some.corners = far->corners[0];
-  some.triangle_count = far->count;
+  some.corners = oversized->corners[0];
+  some.triangle_count = oversized->count;
   return vxm_surface_add(&some, window, kind, false, error);
 }
 
@@ -176,25 +176,25 @@ static vxm_status take_all(flips *out, const vxm_crossing_bins *bins, vxm_error 
   return status;
 }
 
-vxm_status vxm_oversized_flips(uint32_t **out, size_t *count, const vxm_oversized *far,
+vxm_status vxm_oversized_flips(uint32_t **out, size_t *count, const vxm_oversized *oversized,
                                const vxm_slice_job_columns *tile, const vxm_parity_union_job *job,
                                const vxm_disjoint_passes *passes, size_t pass, vxm_error *error) {
-  flips found = {.context = far->context};
+  flips found = {.context = oversized->context};
   const vxm_triangle_set *triangles = job->triangles;
-  vxm_crossing_bins bins = {.context = far->context};
+  vxm_crossing_bins bins = {.context = oversized->context};
   vxm_columns columns = columns_of(tile, job->roles);
   vxm_raster_task task = {
       .placed = job->placed, .triangles = triangles, .columns = &columns, .columns_count = 1, .bins = &bins};
   vxm_status status = vxm_crossing_bins_reset(&bins, 1, 1, 1, words_of(tile), error);
-  for (size_t i = 0; i < far->count && status == VXM_OK; i++) {
-    size_t f = far->triangles[i], part = triangles->part[f];
+  for (size_t i = 0; i < oversized->count && status == VXM_OK; i++) {
+    size_t f = oversized->triangles[i], part = triangles->part[f];
     if (part < job->part_begin || part >= job->part_end || passes->pass_of[part - passes->part_begin] != pass)
       continue;
     task.begin = f;
     task.end = f + 1;
     vxm_kernels_get()->raster(&task);
     /* each may cover all columns */
-    status = vxm_progress(far->context, job->phase, (double)pass / (double)passes->count, error);
+    status = vxm_progress(oversized->context, job->phase, (double)pass / (double)passes->count, error);
   }
   if (status == VXM_OK)
     status = take_all(&found, &bins, error);

@@ -72,12 +72,12 @@ vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *da
   return upload_at(engine, id, 0, data, bytes, error);
 }
 
-void vxm_cl_resident_release(vxm_engine *base, vxm_device_cache_id id) {
+void vxm_cl_device_cache_release(vxm_engine *base, vxm_device_cache_id id) {
   vxm_cl_release(vxm_opencl_of(base), (vxm_cl_buffer_id)id);
 }
 
-vxm_status vxm_cl_resident_upload(vxm_engine *base, vxm_device_cache_id id, size_t offset, const void *data,
-                                  size_t bytes, vxm_error *error) {
+vxm_status vxm_cl_device_cache_upload(vxm_engine *base, vxm_device_cache_id id, size_t offset,
+                                      const void *data, size_t bytes, vxm_error *error) {
   return upload_at(vxm_opencl_of(base), (vxm_cl_buffer_id)id, offset, data, bytes, error);
 }
 

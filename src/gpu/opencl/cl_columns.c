@@ -36,10 +36,10 @@ static vxm_status flip_far(vxm_opencl *engine, const vxm_slice_job_columns *colu
                            vxm_error *error) {
   uint32_t *bits = NULL;
   size_t found = 0;
-  if (engine->resident.far.count == 0)
+  if (engine->device_cache.oversized.count == 0)
     return VXM_OK;
   vxm_status status =
-      vxm_oversized_flips(&bits, &found, &engine->resident.far, columns, job, passes, pass, error);
+      vxm_oversized_flips(&bits, &found, &engine->device_cache.oversized, columns, job, passes, pass, error);
   uint32_t count = (uint32_t)found;
   if (status == VXM_OK && count > 0)
     status = vxm_cl_upload(engine, VXM_CL_LARGE, bits, found * sizeof *bits, error);

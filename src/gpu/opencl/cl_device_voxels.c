@@ -66,7 +66,7 @@ vxm_status vxm_cl_device_voxels(vxm_engine *base, vxm_device_voxels **out, const
   made->base.layout = (vxm_layout){2, 1, 0};
   made->base.release = release;
   made->cl = engine->cl;
-  atomic_init(&made->base.holders, 1);
+  atomic_init(&made->base.reference_count, 1);
   engine->cl->RetainContext(engine->context);
   engine->cl->RetainCommandQueue(engine->queue);
   if (status == VXM_OK)

@@ -10,7 +10,7 @@ vxm_status vxm_cl_move(vxm_engine *base, vxm_snapped_points *placed, const vxm_m
   if (engine->base.info.moves)
     engine->base.info.moves = vxm_cl_ready(engine, VXM_CL_MOVE, NULL) == VXM_OK;
   if (!engine->base.info.moves ||
-      !vxm_device_cache_motion(&engine->resident, job->motion, triangles->point_count))
+      !vxm_device_cache_motion(&engine->device_cache, job->motion, triangles->point_count))
     return VXM_OK;
   vxm_status status = vxm_cl_run(
       engine, VXM_CL_MOVE_POINTS, triangles->first_apex,
@@ -20,5 +20,5 @@ vxm_status vxm_cl_move(vxm_engine *base, vxm_snapped_points *placed, const vxm_m
   if (status == VXM_OK)
     status = vxm_cl_download(engine, VXM_CL_POINTS, 0, placed->narrow,
                              triangles->first_apex * sizeof *placed->narrow, error);
-  return status == VXM_OK ? vxm_device_cache_moved(&engine->resident, placed, job, done, error) : status;
+  return status == VXM_OK ? vxm_device_cache_moved(&engine->device_cache, placed, job, done, error) : status;
 }

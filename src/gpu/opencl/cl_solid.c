@@ -72,7 +72,7 @@ static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm
   vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
   if (method == VXM_CL_TILES || (method == VXM_CL_AUTO && window->fast_dim >= LONG_COLUMN))
     return VXM_OK;
-  return vxm_device_cache_passes(passes, &engine->resident, window, job, 0,
+  return vxm_device_cache_passes(passes, &engine->device_cache, window, job, 0,
                                  method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX, error);
 }
 
@@ -91,7 +91,7 @@ static vxm_status make_tile(vxm_opencl *engine, const vxm_slice_job *tile, const
     }
     vxm_disjoint_passes_destroy(
         passes); /* the lists of tiles are too long: what nobody asked for is left again */
-    status = vxm_device_cache_passes(passes, &engine->resident, tile->window, job, 0, SIZE_MAX, error);
+    status = vxm_device_cache_passes(passes, &engine->device_cache, tile->window, job, 0, SIZE_MAX, error);
   }
   return status == VXM_OK ? vxm_cl_columns(engine, tile, job, passes, into, error) : status;
 }
@@ -124,7 +124,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
       clear(window);
     return VXM_OK;
   }
-  vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
+  vxm_status status = vxm_device_cache_triangles(&engine->device_cache, job->triangles, job->placed, error);
   if (status == VXM_OK)
     status = choose(engine, window, job, &passes, error);
   if (status == VXM_OK && job->has_voxels)
@@ -211,7 +211,7 @@ vxm_status vxm_cl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
   vxm_opencl *engine = vxm_opencl_of(base);
   if (job->part_begin >= job->part_end)
     return VXM_OK;
-  vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
+  vxm_status status = vxm_device_cache_triangles(&engine->device_cache, job->triangles, job->placed, error);
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, job->triangles, error);
   election e = {job, voters_of(job), tally};

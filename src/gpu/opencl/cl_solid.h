@@ -15,7 +15,7 @@ vxm_status vxm_cl_vote(vxm_engine *engine, const vxm_window *window, const vxm_v
 vxm_status vxm_cl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error);
 
-/** See vxm_engine_ops (cl_sparse.c). Open parts and triangles that reach far are left to the CPU. */
+/** See vxm_engine_ops (cl_sparse.c). Open parts and oversized triangles are left to the CPU. */
 vxm_status vxm_cl_surface_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_surface *surface,
                                  vxm_surface_kind kind, vxm_error *error);
 vxm_status vxm_cl_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_space *space,
@@ -60,7 +60,7 @@ vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool i
 vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
                           const vxm_disjoint_passes *passes, vxm_cl_buffer_id into, vxm_error *error);
 
-/** Whether the job can be done tile by tile: its columns run along the bits, and no triangle is far. */
+/** Whether the job can be done tile by tile: its columns run along the bits, and no triangle is oversized. */
 bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job);
 /** The same for such a job, tile of columns by tile of columns (cl_tiles.c). */
 vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,

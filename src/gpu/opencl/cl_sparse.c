@@ -29,10 +29,10 @@ static bool are_closed(const vxm_sparse_job *job) {
   return job->part_end <= split->kind_end[job->roles & VXM_ROLE_CAP ? VXM_PART_CAPPED : VXM_PART_CLOSED];
 }
 
-static bool has_far(const vxm_oversized *far, const vxm_sparse_job *job) {
-  for (size_t i = 0; i < far->count; i++)
-    if (job->triangles->part[far->triangles[i]] < job->part_end &&
-        (vxm_role_of(job->triangles, far->triangles[i]) & job->roles))
+static bool has_oversized(const vxm_oversized *oversized, const vxm_sparse_job *job) {
+  for (size_t i = 0; i < oversized->count; i++)
+    if (job->triangles->part[oversized->triangles[i]] < job->part_end &&
+        (vxm_role_of(job->triangles, oversized->triangles[i]) & job->roles))
       return true;
   return false;
 }
@@ -210,7 +210,7 @@ static vxm_status prepare(making *m, const vxm_space *space, vxm_error *error) {
                                     .has_voxels = m->job->has_voxels,
                                     .phase = "voxelizing"};
   vxm_status status =
-      vxm_device_cache_passes(&m->passes, &engine->resident, &window, &job, 0, SIZE_MAX, error);
+      vxm_device_cache_passes(&m->passes, &engine->device_cache, &window, &job, 0, SIZE_MAX, error);
   if (status == VXM_OK)
     status = vxm_cl_place_parts(engine, job.triangles, error);
   if (status == VXM_OK)
@@ -245,8 +245,8 @@ vxm_status vxm_cl_sparse(vxm_engine *base, vxm_sparse **out, const vxm_space *sp
   *out = NULL;
   if (job->part_end == 0 || !are_closed(job))
     return VXM_OK;
-  vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
-  if (status != VXM_OK || has_far(&engine->resident.far, job))
+  vxm_status status = vxm_device_cache_triangles(&engine->device_cache, job->triangles, job->placed, error);
+  if (status != VXM_OK || has_oversized(&engine->device_cache.oversized, job))
     return status;
   making m = {.engine = engine, .job = job, .passes = {.context = base->context}};
   status = make(out, &m, space, error);

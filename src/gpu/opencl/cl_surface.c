@@ -38,13 +38,13 @@ static vxm_status set_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl
 vxm_status vxm_cl_surface(vxm_engine *base, const vxm_surface *surface, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
-  vxm_status status = vxm_device_cache_surface(&engine->resident, surface, error);
-  if (status == VXM_OK && base->keeps && engine->resident.far_surface.count > 0)
+  vxm_status status = vxm_device_cache_surface(&engine->device_cache, surface, error);
+  if (status == VXM_OK && base->keeps && engine->device_cache.oversized_surface.count > 0)
     return vxm_fail_to_keep(base, error);
   if (status == VXM_OK)
     status =
         vxm_cl_each_tile(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind, is_fresh}, error);
-  return status == VXM_OK && !base->keeps
-             ? vxm_oversized_surface_add(&engine->resident.far_surface, surface, window, kind, error)
-             : status;
+  return status == VXM_OK && !base->keeps ? vxm_oversized_surface_add(&engine->device_cache.oversized_surface,
+                                                                      surface, window, kind, error)
+                                          : status;
 }

@@ -74,8 +74,8 @@ vxm_status vxm_cl_surface_sparse(vxm_engine *base, vxm_sparse **out, const vxm_s
                                  vxm_surface_kind kind, vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
   *out = NULL;
-  vxm_status status = vxm_device_cache_surface(&engine->resident, surface, error);
-  if (status != VXM_OK || engine->resident.far_surface.count > 0)
+  vxm_status status = vxm_device_cache_surface(&engine->device_cache, surface, error);
+  if (status != VXM_OK || engine->device_cache.oversized_surface.count > 0)
     return status;
   status = make(out, engine, surface, kind, error);
   if (status != VXM_OK) {

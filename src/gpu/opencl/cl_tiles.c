@@ -172,6 +172,6 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
 }
 
 bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job) {
-  return job->axis == window->layout.fast && engine->resident.far.count == 0 &&
+  return job->axis == window->layout.fast && engine->device_cache.oversized.count == 0 &&
          job->triangles->split.part_count < (size_t)1 << ROLE_SHIFT;
 }

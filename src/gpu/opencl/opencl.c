@@ -21,7 +21,7 @@ static void destroy(vxm_engine *base) {
   if (engine->context)
     cl->ReleaseContext(engine->context);
   vxm_cl_device_release(&engine->device, cl);
-  vxm_device_cache_destroy(&engine->resident);
+  vxm_device_cache_destroy(&engine->device_cache);
 }
 
 static const vxm_engine_ops opencl_ops = {.move = vxm_cl_move,
@@ -73,7 +73,8 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   }
   engine->base.ops = &opencl_ops;
   engine->base.context = context;
-  engine->resident = vxm_device_cache_of(&engine->base, vxm_cl_resident_upload, vxm_cl_resident_release);
+  engine->device_cache =
+      vxm_device_cache_of(&engine->base, vxm_cl_device_cache_upload, vxm_cl_device_cache_release);
   engine->options = *options;
   engine->options.device = NULL; /* the caller's */
   engine->cl = cl;

@@ -86,9 +86,9 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_ORIGINALS = VXM_CACHED_ORIGINALS,
   VXM_CL_ENTRIES = VXM_CACHED_ENTRIES,
   VXM_CL_NOISE = VXM_CACHED_NOISE,
-  VXM_CL_FLIPS = VXM_RESIDENTS, /**< a bit per voxel of a tile; zero between uses */
-  VXM_CL_LARGE,                 /**< how many triangles of many columns, and which */
-  VXM_CL_RESULT,                /**< two: one is read while the other is made */
+  VXM_CL_FLIPS = VXM_CACHED_COUNT, /**< a bit per voxel of a tile; zero between uses */
+  VXM_CL_LARGE,                    /**< how many triangles of many columns, and which */
+  VXM_CL_RESULT,                   /**< two: one is read while the other is made */
   VXM_CL_RESULT2,
   VXM_CL_VOTER_X, /**< four of them */
   VXM_CL_VOTER_T = VXM_CL_VOTER_X + 3,
@@ -155,7 +155,7 @@ typedef struct vxm_opencl {
   cl_kernel kernels[VXM_CL_KERNELS];
   size_t group; /**< work-items of a group: a power of two that all kernels made so far can have */
   vxm_cl_buffer buffers[VXM_CL_BUFFERS];
-  vxm_device_cache resident;
+  vxm_device_cache device_cache;
   uint64_t parts_serial;    /**< of the triangles whose parts are there, too */
   vxm_cl_stages *stages;    /**< NULL; else the device is waited for after each, and its time is added */
   vxm_cl_stages own_stages; /**< of vxm_engine_measure */
@@ -212,10 +212,10 @@ void vxm_cl_release(vxm_opencl *engine, vxm_cl_buffer_id id);
 /** Room, and these bytes in it; the data may go when this returns. */
 vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *data, size_t bytes,
                          vxm_error *error);
-/** What the engine's residents are brought with. */
-vxm_status vxm_cl_resident_upload(vxm_engine *engine, vxm_device_cache_id id, size_t offset, const void *data,
-                                  size_t bytes, vxm_error *error);
-void vxm_cl_resident_release(vxm_engine *engine, vxm_device_cache_id id);
+/** How buffers of the engine's device cache are filled and freed. */
+vxm_status vxm_cl_device_cache_upload(vxm_engine *engine, vxm_device_cache_id id, size_t offset,
+                                      const void *data, size_t bytes, vxm_error *error);
+void vxm_cl_device_cache_release(vxm_engine *engine, vxm_device_cache_id id);
 /** Reads bytes of a buffer, once all is done that was queued. */
 vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, void *out, size_t bytes,
                            vxm_error *error);

@@ -64,12 +64,12 @@ vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *da
   return upload_at(engine, id, 0, data, bytes, error);
 }
 
-void vxm_gl_resident_release(vxm_engine *base, vxm_device_cache_id id) {
+void vxm_gl_device_cache_release(vxm_engine *base, vxm_device_cache_id id) {
   vxm_gl_release(vxm_opengl_of(base), (vxm_gl_buffer_id)id);
 }
 
-vxm_status vxm_gl_resident_upload(vxm_engine *base, vxm_device_cache_id id, size_t offset, const void *data,
-                                  size_t bytes, vxm_error *error) {
+vxm_status vxm_gl_device_cache_upload(vxm_engine *base, vxm_device_cache_id id, size_t offset,
+                                      const void *data, size_t bytes, vxm_error *error) {
   return upload_at(vxm_opengl_of(base), (vxm_gl_buffer_id)id, offset, data, bytes, error);
 }
 

@@ -70,10 +70,10 @@ static vxm_status flip_far(vxm_opengl *engine, const vxm_gl_job *gl_job, const v
                            const vxm_disjoint_passes *passes, size_t pass, vxm_error *error) {
   uint32_t *bits = NULL;
   size_t count = 0;
-  if (engine->resident.far.count == 0)
+  if (engine->device_cache.oversized.count == 0)
     return VXM_OK;
-  vxm_status status =
-      vxm_oversized_flips(&bits, &count, &engine->resident.far, &gl_job->columns, job, passes, pass, error);
+  vxm_status status = vxm_oversized_flips(&bits, &count, &engine->device_cache.oversized, &gl_job->columns,
+                                          job, passes, pass, error);
   if (status == VXM_OK && count > 0)
     status = vxm_gl_upload(engine, VXM_GL_LARGE, bits, count * sizeof *bits, error);
   if (status == VXM_OK && count > 0)

@@ -76,8 +76,8 @@ static vxm_status make(vxm_opengl *engine, vxm_device_voxels **out, vxm_device_i
   made->base.layout = (vxm_layout)VXM_LAYOUT_GRID;
   made->base.release = release;
   made->engine = engine;
-  atomic_init(&made->base.holders, 1);
-  atomic_fetch_add(&engine->base.holders, 1);
+  atomic_init(&made->base.reference_count, 1);
+  atomic_fetch_add(&engine->base.reference_count, 1);
   if (status == VXM_OK)
     status = make_texture(engine, &made->base, error);
   if (status == VXM_OK)

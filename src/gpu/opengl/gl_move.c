@@ -30,13 +30,13 @@ static vxm_status move(vxm_opengl *engine, vxm_snapped_points *placed, const vxm
                        vxm_error *error) {
   const vxm_triangle_set *triangles = job->triangles;
   vxm_device_transform_job gl_job = vxm_device_transform_job_of(placed, job->motion);
-  if (!vxm_device_cache_motion(&engine->resident, job->motion, triangles->point_count))
+  if (!vxm_device_cache_motion(&engine->device_cache, job->motion, triangles->point_count))
     return VXM_OK;
   vxm_status status = draw(engine, &gl_job, error);
   if (status == VXM_OK)
     status = vxm_gl_download(engine, VXM_GL_POINTS, placed->narrow,
                              triangles->first_apex * sizeof *placed->narrow, error);
-  return status == VXM_OK ? vxm_device_cache_moved(&engine->resident, placed, job, done, error) : status;
+  return status == VXM_OK ? vxm_device_cache_moved(&engine->device_cache, placed, job, done, error) : status;
 }
 
 vxm_status vxm_gl_move(vxm_engine *base, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,

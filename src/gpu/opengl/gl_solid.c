@@ -53,7 +53,7 @@ static vxm_status create_passes(vxm_disjoint_passes *out, vxm_opengl *engine, co
   /* Slices move points, and the apex in any case a little. */
   double move = engine->options.displacement;
   int64_t margin = engine->base.wants_apexes ? (int64_t)(move < 1 << 20 ? move : 1 << 20) + 1 : 0;
-  return vxm_device_cache_passes(out, &engine->resident, window, job, margin, SIZE_MAX, error);
+  return vxm_device_cache_passes(out, &engine->device_cache, window, job, margin, SIZE_MAX, error);
 }
 
 static vxm_status clear_touched(vxm_opengl *engine, size_t part_count, vxm_error *error) {
@@ -112,7 +112,7 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
+  status = vxm_device_cache_triangles(&engine->device_cache, job->triangles, job->placed, error);
   if (status == VXM_OK)
     status = create_passes(&passes, engine, window, job, error);
   if (status == VXM_OK && job->has_voxels)
@@ -211,7 +211,7 @@ vxm_status vxm_gl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
+  status = vxm_device_cache_triangles(&engine->device_cache, job->triangles, job->placed, error);
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, parts, error);
   election e = {job, voters_of(job), tally};

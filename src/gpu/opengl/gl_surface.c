@@ -111,15 +111,15 @@ vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vx
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_device_cache_surface(&engine->resident, surface, error);
-  bool needs_host = base->keeps && engine->resident.far_surface.count > 0;
+  status = vxm_device_cache_surface(&engine->device_cache, surface, error);
+  bool needs_host = base->keeps && engine->device_cache.oversized_surface.count > 0;
   drawing d = {surface, kind, is_fresh};
   if (status == VXM_OK && !needs_host)
     status = vxm_gl_each_tile(engine, window, !is_fresh, draw_tile, &d, error);
   vxm_gl_leave(&engine->context);
   if (status == VXM_OK && needs_host)
     return vxm_fail_to_keep(base, error);
-  return status == VXM_OK && !base->keeps
-             ? vxm_oversized_surface_add(&engine->resident.far_surface, surface, window, kind, error)
-             : status;
+  return status == VXM_OK && !base->keeps ? vxm_oversized_surface_add(&engine->device_cache.oversized_surface,
+                                                                      surface, window, kind, error)
+                                          : status;
 }

@@ -181,7 +181,7 @@ static void destroy(vxm_engine *base) {
     vxm_memory_give(base->context, engine->buffers[b].bytes);
   vxm_memory_give(base->context, engine->presence.bytes);
   vxm_gl_context_destroy(&engine->context);
-  vxm_device_cache_destroy(&engine->resident);
+  vxm_device_cache_destroy(&engine->device_cache);
 }
 
 static const vxm_engine_ops opengl_ops = {.move = vxm_gl_move,
@@ -226,7 +226,8 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
   engine->base.wants_apexes = options->gl_method != VXM_GL_COLUMNS;
   engine->base.displaces = options->displacement > 0;
   engine->base.context = context;
-  engine->resident = vxm_device_cache_of(&engine->base, vxm_gl_resident_upload, vxm_gl_resident_release);
+  engine->device_cache =
+      vxm_device_cache_of(&engine->base, vxm_gl_device_cache_upload, vxm_gl_device_cache_release);
   engine->options = *options;
   vxm_opengl_name(engine->base.info.name, sizeof engine->base.info.name, driver, index);
   vxm_status status = vxm_gl_context_create(&engine->context, driver, index, error);

@@ -37,11 +37,11 @@ typedef enum vxm_gl_buffer_id {
   VXM_GL_ORIGINALS = VXM_CACHED_ORIGINALS,
   VXM_GL_ENTRIES = VXM_CACHED_ENTRIES,
   VXM_GL_NOISE = VXM_CACHED_NOISE,
-  VXM_GL_FLIPS = VXM_RESIDENTS, /**< a bit per voxel of a tile; zero between uses */
-  VXM_GL_LARGE,                 /**< the indirect draw, and its triangles */
-  VXM_GL_JOB,                   /**< vxm_gl_job */
-  VXM_GL_RESULT,                /**< what is inside, a bit per voxel of a tile */
-  VXM_GL_VOTER_X,               /**< four of them */
+  VXM_GL_FLIPS = VXM_CACHED_COUNT, /**< a bit per voxel of a tile; zero between uses */
+  VXM_GL_LARGE,                    /**< the indirect draw, and its triangles */
+  VXM_GL_JOB,                      /**< vxm_gl_job */
+  VXM_GL_RESULT,                   /**< what is inside, a bit per voxel of a tile */
+  VXM_GL_VOTER_X,                  /**< four of them */
   VXM_GL_VOTER_T = VXM_GL_VOTER_X + 3,
   VXM_GL_TALLY,
   VXM_GL_RANDOM, /**< the circular buffer of displacements of slices */
@@ -87,7 +87,7 @@ typedef struct vxm_opengl {
   vxm_gl_buffer buffers[VXM_GL_BUFFERS];
   const vxm_gl_format *format; /**< that passed the self-test */
   vxm_gl_presence presence;
-  vxm_device_cache resident;
+  vxm_device_cache device_cache;
   /** Vertex and geometry shaders may read buffers; else compute shaders do all triangles, and slices are
    * refused. */
   bool can_pull, can_pull_late;
@@ -135,10 +135,10 @@ void vxm_gl_release(vxm_opengl *engine, vxm_gl_buffer_id id);
 /** Room, and these bytes in it. */
 vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *data, size_t bytes,
                          vxm_error *error);
-/** What the engine's residents are brought with. */
-vxm_status vxm_gl_resident_upload(vxm_engine *engine, vxm_device_cache_id id, size_t offset, const void *data,
-                                  size_t bytes, vxm_error *error);
-void vxm_gl_resident_release(vxm_engine *engine, vxm_device_cache_id id);
+/** How buffers of the engine's device cache are filled and freed. */
+vxm_status vxm_gl_device_cache_upload(vxm_engine *engine, vxm_device_cache_id id, size_t offset,
+                                      const void *data, size_t bytes, vxm_error *error);
+void vxm_gl_device_cache_release(vxm_engine *engine, vxm_device_cache_id id);
 /** Binds a buffer to where shaders look for it. */
 void vxm_gl_bind(vxm_opengl *engine, GLuint binding, vxm_gl_buffer_id id);
 /** Reads the first bytes of a buffer, once all is done that writes them. */

@@ -201,9 +201,9 @@ vxm_status vxm_greedy_quads_find(vxm_greedy_quads *out, const vxm_grid *grid, vx
   return status;
 }
 
-void vxm_greedy_quads_destroy(vxm_greedy_quads *rectangles) {
-  for (size_t l = 0; rectangles->lists && l < rectangles->list_count; l++)
-    vxm_free(rectangles->context, rectangles->lists[l].items);
-  vxm_free(rectangles->context, rectangles->lists);
-  rectangles->lists = NULL;
+void vxm_greedy_quads_destroy(vxm_greedy_quads *quads) {
+  for (size_t l = 0; quads->lists && l < quads->list_count; l++)
+    vxm_free(quads->context, quads->lists[l].items);
+  vxm_free(quads->context, quads->lists);
+  quads->lists = NULL;
 }

@@ -32,6 +32,6 @@ typedef struct vxm_greedy_quads {
  *         VXM_ERROR_CANCELLED
  */
 vxm_status vxm_greedy_quads_find(vxm_greedy_quads *out, const vxm_grid *grid, vxm_error *error);
-void vxm_greedy_quads_destroy(vxm_greedy_quads *rectangles);
+void vxm_greedy_quads_destroy(vxm_greedy_quads *quads);
 
 #endif

@@ -46,10 +46,10 @@ static void put_corners(record *to, const vxm_greedy_quad *r, int axis, uint32_t
   }
 }
 
-static void put_all_corners(record *to, const vxm_greedy_quads *rectangles) {
+static void put_all_corners(record *to, const vxm_greedy_quads *quads) {
   uint32_t first = 0;
-  for (size_t l = 0; l < rectangles->list_count; l++) {
-    const vxm_greedy_quad_list *list = &rectangles->lists[l];
+  for (size_t l = 0; l < quads->list_count; l++) {
+    const vxm_greedy_quad_list *list = &quads->lists[l];
     for (size_t r = 0; r < list->count; r++, first += 4)
       put_corners(to + first, &list->items[r], list->axis, first);
   }
@@ -144,9 +144,9 @@ static vxm_status link_lines(vxm_quad_vertices *c, const int64_t dims[3], size_t
   return status;
 }
 
-static vxm_status find(vxm_quad_vertices *c, scratch *s, const vxm_greedy_quads *rectangles,
-                       const int64_t dims[3], vxm_error *error) {
-  size_t count = 4 * rectangles->count, longest = 0;
+static vxm_status find(vxm_quad_vertices *c, scratch *s, const vxm_greedy_quads *quads, const int64_t dims[3],
+                       vxm_error *error) {
+  size_t count = 4 * quads->count, longest = 0;
   for (int a = 0; a < 3; a++)
     longest = (size_t)dims[a] > longest ? (size_t)dims[a] : longest;
   vxm_status status = VXM_OK;
@@ -156,7 +156,7 @@ static vxm_status find(vxm_quad_vertices *c, scratch *s, const vxm_greedy_quads 
     s->records[r] = take(s->context, count, sizeof *s->records[r], &status, error);
   if (status != VXM_OK)
     return status;
-  put_all_corners(s->records[0], rectangles);
+  put_all_corners(s->records[0], quads);
   for (int axis = 0; status == VXM_OK && axis < 3; axis++) {
     sort_records(s->records[(axis + 1) % 2], s->records[axis % 2], count, axis, s->starts,
                  (size_t)dims[axis] + 1);
@@ -177,11 +177,11 @@ static vxm_status find(vxm_quad_vertices *c, scratch *s, const vxm_greedy_quads 
   return link_lines(c, dims, s->starts, error);
 }
 
-vxm_status vxm_quad_vertices_find(vxm_quad_vertices *out, const vxm_greedy_quads *rectangles,
+vxm_status vxm_quad_vertices_find(vxm_quad_vertices *out, const vxm_greedy_quads *quads,
                                   const int64_t dims[3], vxm_error *error) {
-  *out = (vxm_quad_vertices){.context = rectangles->context};
-  scratch s = {.context = rectangles->context};
-  vxm_status status = find(out, &s, rectangles, dims, error);
+  *out = (vxm_quad_vertices){.context = quads->context};
+  scratch s = {.context = quads->context};
+  vxm_status status = find(out, &s, quads, dims, error);
   scratch_destroy(&s);
   if (status != VXM_OK)
     vxm_quad_vertices_destroy(out);

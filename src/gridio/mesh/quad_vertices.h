@@ -29,7 +29,7 @@ typedef struct vxm_quad_vertices {
 } vxm_quad_vertices;
 
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED */
-vxm_status vxm_quad_vertices_find(vxm_quad_vertices *out, const vxm_greedy_quads *rectangles,
+vxm_status vxm_quad_vertices_find(vxm_quad_vertices *out, const vxm_greedy_quads *quads,
                                   const int64_t dims[3], vxm_error *error);
 void vxm_quad_vertices_destroy(vxm_quad_vertices *corners);
 

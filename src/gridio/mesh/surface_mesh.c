@@ -174,20 +174,20 @@ static vxm_status add_rectangle(builder *b, const vxm_greedy_quad *quad, int axi
   return status;
 }
 
-static size_t count_all(const vxm_quad_vertices *c, const vxm_greedy_quads *rectangles) {
+static size_t count_all(const vxm_quad_vertices *c, const vxm_greedy_quads *quads) {
   const uint32_t *corner = c->vertex;
   size_t corners = 0;
-  for (size_t l = 0; l < rectangles->list_count; l++)
-    for (size_t r = 0; r < rectangles->lists[l].count; r++, corner += 4)
-      corners += count_polygon(c, corner, axes_of(rectangles->lists[l].axis));
+  for (size_t l = 0; l < quads->list_count; l++)
+    for (size_t r = 0; r < quads->lists[l].count; r++, corner += 4)
+      corners += count_polygon(c, corner, axes_of(quads->lists[l].axis));
   return corners;
 }
 
-static vxm_status add_all(builder *b, const vxm_greedy_quads *rectangles, vxm_error *error) {
+static vxm_status add_all(builder *b, const vxm_greedy_quads *quads, vxm_error *error) {
   const uint32_t *corner = b->lattice->vertex;
   vxm_status status = VXM_OK;
-  for (size_t l = 0; l < rectangles->list_count && status == VXM_OK; l++) {
-    const vxm_greedy_quad_list *list = &rectangles->lists[l];
+  for (size_t l = 0; l < quads->list_count && status == VXM_OK; l++) {
+    const vxm_greedy_quad_list *list = &quads->lists[l];
     status = vxm_ask(b->soup->context, error);
     for (size_t r = 0; r < list->count && status == VXM_OK; r++, corner += 4)
       status = add_rectangle(b, &list->items[r], list->axis, corner, error);
@@ -203,12 +203,12 @@ static void place_vertices(vxm_soup *soup, const vxm_quad_vertices *c, const vxm
 }
 
 /** Makes the faces, once all is known that they are made of. */
-static vxm_status fill(vxm_soup *soup, const vxm_greedy_quads *rectangles, const vxm_quad_vertices *lattice,
+static vxm_status fill(vxm_soup *soup, const vxm_greedy_quads *quads, const vxm_quad_vertices *lattice,
                        const vxm_split_vertices *split, const vxm_grid *grid, bool triangles,
                        vxm_error *error) {
   /* the middle of an edge of four faces is a corner of each */
-  size_t corners = count_all(lattice, rectangles) + (split ? 4 * split->middles : 0);
-  size_t faces = triangles ? corners - 2 * rectangles->count : rectangles->count;
+  size_t corners = count_all(lattice, quads) + (split ? 4 * split->middles : 0);
+  size_t faces = triangles ? corners - 2 * quads->count : quads->count;
   size_t vertices = split ? split->vertex_count : lattice->vertex_count;
   vxm_status status = vxm_soup_reserve(soup, vertices, faces, triangles ? 3 * faces : corners, error);
   if (status != VXM_OK)
@@ -220,32 +220,32 @@ static vxm_status fill(vxm_soup *soup, const vxm_greedy_quads *rectangles, const
   soup->vertex_count = vertices;
   builder b = {.soup = soup, .lattice = lattice, .split = split, .triangles = triangles};
   vxm_triangulator_open(&b.tri, soup->context);
-  status = add_all(&b, rectangles, error);
+  status = add_all(&b, quads, error);
   builder_close(&b);
   return status;
 }
 
 static vxm_status build(vxm_soup *soup, const vxm_grid *grid, unsigned flags, vxm_error *error) {
-  vxm_greedy_quads rectangles;
+  vxm_greedy_quads quads;
   vxm_quad_vertices corners;
   vxm_split_vertices split;
   const bool splits = flags & VXM_SURFACE_MESH_MANIFOLD;
-  vxm_status status = vxm_greedy_quads_find(&rectangles, grid, error);
+  vxm_status status = vxm_greedy_quads_find(&quads, grid, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_quad_vertices_find(&corners, &rectangles, grid->space.dims, error);
+  status = vxm_quad_vertices_find(&corners, &quads, grid->space.dims, error);
   if (status == VXM_OK) {
     if (splits)
       status = vxm_split_vertices_find(&split, &corners, grid, error);
     if (status == VXM_OK) {
-      status = fill(soup, &rectangles, &corners, splits ? &split : NULL, grid,
-                    flags & VXM_SURFACE_MESH_TRIANGLES, error);
+      status = fill(soup, &quads, &corners, splits ? &split : NULL, grid, flags & VXM_SURFACE_MESH_TRIANGLES,
+                    error);
       if (splits)
         vxm_split_vertices_destroy(&split);
     }
     vxm_quad_vertices_destroy(&corners);
   }
-  vxm_greedy_quads_destroy(&rectangles);
+  vxm_greedy_quads_destroy(&quads);
   return status;
 }
 

@@ -8,7 +8,7 @@
 /* ---- Level 0 from bits ---- */
 
 typedef struct filling {
-  vxm_occupancy_mips *pyramid;
+  vxm_occupancy_mips *mips;
   const vxm_grid *grid;
   int level;
 } filling;
@@ -31,11 +31,11 @@ static void gather(uint64_t *blocks, const vxm_grid *grid, int64_t j, int64_t k,
 static void fill_first(size_t task, int worker, void *payload) {
   (void)worker;
   const filling *f = payload;
-  const int64_t *dims = f->pyramid->level[0].dims, bk = (int64_t)task;
+  const int64_t *dims = f->mips->level[0].dims, bk = (int64_t)task;
   for (int64_t bj = 0; bj < dims[1]; bj++) {
     int64_t first = (bk * dims[1] + bj) * dims[0];
-    uint64_t *blocks = f->pyramid->blocks + first;
-    uint8_t *cells = f->pyramid->level[0].cells + first;
+    uint64_t *blocks = f->mips->blocks + first;
+    uint8_t *cells = f->mips->level[0].cells + first;
     memset(blocks, 0, (size_t)dims[0] * sizeof *blocks);
     for (int64_t k = 4 * bk; k < smaller(4 * bk + 4, f->grid->space.dims[2]); k++)
       gather(blocks, f->grid, 4 * bj, k, dims[0]);
@@ -49,8 +49,8 @@ static void fill_first(size_t task, int worker, void *payload) {
 static void fill_next(size_t task, int worker, void *payload) {
   (void)worker;
   const filling *f = payload;
-  const int64_t *fine = f->pyramid->level[f->level - 1].dims, *dims = f->pyramid->level[f->level].dims;
-  const uint8_t *from = f->pyramid->level[f->level - 1].cells;
+  const int64_t *fine = f->mips->level[f->level - 1].dims, *dims = f->mips->level[f->level].dims;
+  const uint8_t *from = f->mips->level[f->level - 1].cells;
   int64_t k = (int64_t)task;
   for (int64_t j = 0; j < dims[1]; j++)
     for (int64_t i = 0; i < dims[0]; i++) {
@@ -60,7 +60,7 @@ static void fill_next(size_t task, int worker, void *payload) {
           for (int64_t x = 2 * i; x < smaller(2 * i + 2, fine[0]); x++)
             sum += from[(z * fine[1] + y) * fine[0] + x];
       /* Rounded up, so that 0 stays the mark of an empty cell. */
-      f->pyramid->level[f->level].cells[(k * dims[1] + j) * dims[0] + i] = (uint8_t)((sum + 7) / 8);
+      f->mips->level[f->level].cells[(k * dims[1] + j) * dims[0] + i] = (uint8_t)((sum + 7) / 8);
     }
 }
 
@@ -70,7 +70,7 @@ static void fill_next(size_t task, int worker, void *payload) {
 static void measure_gaps(size_t task, int worker, void *payload) {
   (void)worker;
   const filling *f = payload;
-  const vxm_occupancy_mips *p = f->pyramid;
+  const vxm_occupancy_mips *p = f->mips;
   const int64_t *dims = p->level[0].dims, k = 4 * (int64_t)task;
   for (int64_t j = 0; j < dims[1]; j++)
     for (int64_t i = 0; i < dims[0]; i++) {
@@ -120,18 +120,18 @@ vxm_status vxm_occupancy_mips_create(vxm_occupancy_mips *out, const vxm_grid *gr
   return VXM_OK;
 }
 
-void vxm_occupancy_mips_destroy(vxm_occupancy_mips *pyramid) {
-  for (int l = 0; l < pyramid->levels; l++)
-    vxm_free(pyramid->context, pyramid->level[l].cells);
-  vxm_free(pyramid->context, pyramid->blocks);
-  vxm_free(pyramid->context, pyramid->gaps);
-  pyramid->blocks = NULL;
-  pyramid->gaps = NULL;
-  pyramid->levels = 0;
+void vxm_occupancy_mips_destroy(vxm_occupancy_mips *mips) {
+  for (int l = 0; l < mips->levels; l++)
+    vxm_free(mips->context, mips->level[l].cells);
+  vxm_free(mips->context, mips->blocks);
+  vxm_free(mips->context, mips->gaps);
+  mips->blocks = NULL;
+  mips->gaps = NULL;
+  mips->levels = 0;
 }
 
-double vxm_occupancy_mips_sample(const vxm_occupancy_mips *pyramid, int level, const double point[3]) {
-  const int64_t *dims = pyramid->level[level].dims;
+double vxm_occupancy_mips_sample(const vxm_occupancy_mips *mips, int level, const double point[3]) {
+  const int64_t *dims = mips->level[level].dims;
   double side = (double)(INT64_C(4) << level), part[3];
   int64_t base[3];
   for (int a = 0; a < 3; a++) {
@@ -148,7 +148,7 @@ double vxm_occupancy_mips_sample(const vxm_occupancy_mips *pyramid, int level, c
     int64_t j = base[1] + (n & 1), k = base[2] + (n >> 1);
     if (j < 0 || k < 0 || j >= dims[1] || k >= dims[2])
       continue;
-    const uint8_t *row = pyramid->level[level].cells + (k * dims[1] + j) * dims[0];
+    const uint8_t *row = mips->level[level].cells + (k * dims[1] + j) * dims[0];
     along[0] += base[0] >= 0 ? weight[n >> 1][n & 1] * row[base[0]] : 0;
     along[1] += base[0] + 1 < dims[0] ? weight[n >> 1][n & 1] * row[base[0] + 1] : 0;
   }

@@ -24,7 +24,7 @@ typedef struct vxm_occupancy_mips {
 
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_occupancy_mips_create(vxm_occupancy_mips *out, const vxm_grid *grid, vxm_error *error);
-void vxm_occupancy_mips_destroy(vxm_occupancy_mips *pyramid);
+void vxm_occupancy_mips_destroy(vxm_occupancy_mips *mips);
 
 /** The cell of level 0 that holds a voxel. */
 static inline int64_t vxm_occupancy_mips_index(const vxm_occupancy_mips *p, const int64_t voxel[3]) {
@@ -42,6 +42,6 @@ static inline uint8_t vxm_occupancy_mips_cell(const vxm_occupancy_mips *p, int l
 }
 
 /** Fullness around a point (in voxels), 0 to 1, interpolated between the centres of cells. */
-double vxm_occupancy_mips_sample(const vxm_occupancy_mips *pyramid, int level, const double point[3]);
+double vxm_occupancy_mips_sample(const vxm_occupancy_mips *mips, int level, const double point[3]);
 
 #endif

@@ -77,11 +77,11 @@ static void add_cell(outline *o, const box *limits, const double step[3], const 
 /** The first and last cell of each row of a coarse level, cut to the occupied box; the box if all is empty.
  */
 static vxm_status find_outline(outline *o, const vxm_scene *scene, const box *limits, vxm_error *error) {
-  const vxm_occupancy_mips *pyramid = &scene->pyramid;
+  const vxm_occupancy_mips *mips = &scene->mips;
   int level = 0;
-  while (level + 1 < pyramid->levels && pyramid->level[level].dims[1] * pyramid->level[level].dims[2] > 1024)
+  while (level + 1 < mips->levels && mips->level[level].dims[1] * mips->level[level].dims[2] > 1024)
     level++;
-  const int64_t *dims = pyramid->level[level].dims;
+  const int64_t *dims = mips->level[level].dims;
   vxm_error local = VXM_ERROR_INIT;
   size_t most = 16 * (size_t)(dims[1] * dims[2]);
   o->count = 0;
@@ -92,7 +92,7 @@ static vxm_status find_outline(outline *o, const vxm_scene *scene, const box *li
   }
   int64_t side = INT64_C(4) << level;
   for (int64_t row = 0; row < dims[1] * dims[2]; row++) {
-    const uint8_t *cells = pyramid->level[level].cells + row * dims[0];
+    const uint8_t *cells = mips->level[level].cells + row * dims[0];
     int64_t first = 0, last = dims[0] - 1;
     while (first < dims[0] && !cells[first])
       first++;
@@ -426,7 +426,7 @@ vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const vo
   vxm_scene scene = {.grid = grid, .paint = paint, .painted = painted};
   set_steps(&scene, &grid->space);
   vxm_scene_weigh(&scene);
-  status = vxm_occupancy_mips_create(&scene.pyramid, grid, error);
+  status = vxm_occupancy_mips_create(&scene.mips, grid, error);
   if (status != VXM_OK)
     return status;
   vxm_output *output;
@@ -440,6 +440,6 @@ vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const vo
     else
       vxm_output_abort(output);
   }
-  vxm_occupancy_mips_destroy(&scene.pyramid);
+  vxm_occupancy_mips_destroy(&scene.mips);
   return status;
 }

@@ -105,9 +105,9 @@ static bool search_block(vxm_hit *hit, const ray *r, uint64_t voxels) {
   return found;
 }
 
-bool vxm_raycast(vxm_hit *hit, const vxm_occupancy_mips *pyramid, const double origin[3],
+bool vxm_raycast(vxm_hit *hit, const vxm_occupancy_mips *mips, const double origin[3],
                  const double direction[3]) {
-  const int64_t *dims = pyramid->dims;
+  const int64_t *dims = mips->dims;
   ray r;
   for (int a = 0; a < 3; a++) {
     r.origin[a] = origin[a];
@@ -122,11 +122,11 @@ bool vxm_raycast(vxm_hit *hit, const vxm_occupancy_mips *pyramid, const double o
     hit->voxel[a] = index_at(&r, a, hit->t, 0, dims[a] - 1);
   /* The largest empty block around is left at once. */
   for (;;) {
-    int64_t block = vxm_occupancy_mips_index(pyramid, hit->voxel);
-    int gap = pyramid->gaps[block];
+    int64_t block = vxm_occupancy_mips_index(mips, hit->voxel);
+    int gap = mips->gaps[block];
     if (gap > 0)
       leave_block(hit, &r, gap + 1, dims);
-    else if (search_block(hit, &r, pyramid->blocks[block]))
+    else if (search_block(hit, &r, mips->blocks[block]))
       return true;
     int64_t at = hit->voxel[hit->axis];
     if (at < 0 || at >= dims[hit->axis])

@@ -13,7 +13,7 @@ typedef struct vxm_hit {
 } vxm_hit;
 
 /** Finds the first set voxel along a ray for t >= 0. The direction is not null and need not have length 1. */
-bool vxm_raycast(vxm_hit *hit, const vxm_occupancy_mips *pyramid, const double origin[3],
+bool vxm_raycast(vxm_hit *hit, const vxm_occupancy_mips *mips, const double origin[3],
                  const double direction[3]);
 
 #endif

@@ -129,11 +129,11 @@ static double off_line(double width, const double part[2]) {
 static double sky_openness(const vxm_scene *scene, const double point[3], vxm_ray_vec3 normal) {
   static const double strength[4] = {0.50, 0.50, 0.45, 0.40};
   double open = 1;
-  for (int l = 0; l < 4 && l < scene->pyramid.levels; l++) {
+  for (int l = 0; l < 4 && l < scene->mips.levels; l++) {
     double at[3], distance = (double)(4 << l);
     for (int a = 0; a < 3; a++)
       at[a] = point[a] + distance * normal.c[a];
-    open *= 1 - strength[l] * vxm_occupancy_mips_sample(&scene->pyramid, l, at);
+    open *= 1 - strength[l] * vxm_occupancy_mips_sample(&scene->mips, l, at);
   }
   return open;
 }
@@ -146,7 +146,7 @@ static bool sees_sun(const vxm_scene *scene, const double point[3], const double
                                          out * turned[1], scene->side[1]);
   to_voxels(scene, toward, direction);
   vxm_hit hit;
-  return !vxm_raycast(&hit, &scene->pyramid, point, direction);
+  return !vxm_raycast(&hit, &scene->mips, point, direction);
 }
 
 static vxm_light shade_voxel(const vxm_scene *scene, const vxm_hit *hit, const double origin[3],
@@ -227,7 +227,7 @@ bool vxm_shade(vxm_light *out, const vxm_scene *scene, vxm_ray_vec3 origin, vxm_
   to_voxels(scene, origin, from);
   to_voxels(scene, direction, along);
   vxm_hit hit;
-  if (!vxm_raycast(&hit, &scene->pyramid, from, along) || hit.axis < 0)
+  if (!vxm_raycast(&hit, &scene->mips, from, along) || hit.axis < 0)
     return false;
   *out = shade_voxel(scene, &hit, from, along, jitter);
   return true;

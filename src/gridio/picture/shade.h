@@ -19,7 +19,7 @@ typedef struct vxm_scene {
   const vxm_grid *grid;
   vxm_paint_fn paint;  /**< NULL = all voxels have one colour */
   const void *painted; /**< handed to paint */
-  vxm_occupancy_mips pyramid;
+  vxm_occupancy_mips mips;
   double step[3];
   vxm_ray_vec3 up, light; /**< unit; toward the light */
   vxm_ray_vec3 side[2];   /**< unit, square to the light and each other: its disk, for soft shadows */

@@ -54,11 +54,11 @@ static void mark(vxm_tiles *tiles, const vxm_scene *scene, const vxm_camera *cam
 
 /** The finest level of which there are not many more cells than tiles, so that this takes less time than what
  * it saves. */
-static int choose_level(const vxm_occupancy_mips *pyramid) {
+static int choose_level(const vxm_occupancy_mips *mips) {
   const int64_t most = 1 << 19;
   int level = 0;
-  while (level + 1 < pyramid->levels &&
-         pyramid->level[level].dims[0] * pyramid->level[level].dims[1] * pyramid->level[level].dims[2] > most)
+  while (level + 1 < mips->levels &&
+         mips->level[level].dims[0] * mips->level[level].dims[1] * mips->level[level].dims[2] > most)
     level++;
   return level;
 }
@@ -76,9 +76,9 @@ vxm_status vxm_tiles_create(vxm_tiles *out, const vxm_scene *scene, const vxm_ca
   }
   for (size_t i = 0; i < count; i++)
     out->depth[i] = INFINITY;
-  int level = choose_level(&scene->pyramid);
-  const int64_t *dims = scene->pyramid.level[level].dims;
-  const uint8_t *cells = scene->pyramid.level[level].cells;
+  int level = choose_level(&scene->mips);
+  const int64_t *dims = scene->mips.level[level].dims;
+  const uint8_t *cells = scene->mips.level[level].cells;
   for (int64_t k = 0; k < dims[2]; k++)
     for (int64_t j = 0; j < dims[1]; j++)
       for (int64_t i = 0; i < dims[0]; i++) {

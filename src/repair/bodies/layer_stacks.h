@@ -17,7 +17,7 @@ typedef struct vxm_patch_border {
  * cancel the last ones.
  *
  * @param borders sorted by patch, then by edge
- * @param reach   as in vxm_layers_balance; l->front is one of both
+ * @param reach   as in vxm_layers_balance; layers->front is one of both
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 vxm_status vxm_layers_stack(vxm_layers *layers, const vxm_patch_border *borders, size_t count,

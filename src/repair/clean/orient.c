@@ -282,29 +282,29 @@ static bool is_closed_or_nearly(const patch *p) {
 }
 
 /** What bounds no volume goes with the model. */
-static bool is_inward(const vxm_containment *nesting, size_t i, bool follow) {
-  return nesting->volume[i] < 0 || (nesting->volume[i] == 0 && follow);
+static bool is_inward(const vxm_containment *containment, size_t i, bool follow) {
+  return containment->volume[i] < 0 || (containment->volume[i] == 0 && follow);
 }
 
 /** Which patches to turn over: outward those that bound a volume, but for cavities. The others that `follow`
  * the model are turned over where it came inside out. */
-static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, const uint8_t *held,
+static void choose_sides(const vxm_containment *containment, const uint8_t *solid, const uint8_t *held,
                          bool follow, uint8_t *over, uint8_t *known, size_t *chain) {
-  for (size_t i = 0; i < nesting->count; i++) {
+  for (size_t i = 0; i < containment->count; i++) {
     size_t depth = 0, at = i;
     if (!solid[i])
       over[i] = follow;
-    for (; !known[at] && solid[at]; at = nesting->parent[at]) {
+    for (; !known[at] && solid[at]; at = containment->parent[at]) {
       chain[depth++] = at;
-      if (nesting->parent[at] == VXM_NO_COMPONENT)
+      if (containment->parent[at] == VXM_NO_COMPONENT)
         break;
     }
     while (depth > 0) {
       size_t child = chain[--depth];
-      uint32_t parent = nesting->parent[child];
-      bool inward = is_inward(nesting, child, follow);
+      uint32_t parent = containment->parent[child];
+      bool inward = is_inward(containment, child, follow);
       over[child] = inward;
-      if (parent != VXM_NO_COMPONENT && inward != is_inward(nesting, parent, follow))
+      if (parent != VXM_NO_COMPONENT && inward != is_inward(containment, parent, follow))
         over[child] = over[parent]; /* against the parent it stays */
       if (held[child])
         over[child] = follow;
@@ -333,12 +333,12 @@ static const double rounding = 1e-6;
  * inward; or, where nothing does but faces meet along edges that have more than two, all faces together are.
  * So the patches that have no side of their own stand to the others as they did, and reversing all faces of a
  * file changes nothing about how they meet. */
-static bool is_inside_out(const orienting *o, const vxm_containment *nesting, const uint8_t *solid) {
+static bool is_inside_out(const orienting *o, const vxm_containment *containment, const uint8_t *solid) {
   double outward = 0, bounding = 0, all = 0;
-  for (size_t i = 0; i < nesting->count; i++) {
+  for (size_t i = 0; i < containment->count; i++) {
     all += o->patches[i].area;
-    if (solid[i] && nesting->parent[i] == VXM_NO_COMPONENT && nesting->volume[i] != 0) {
-      outward += nesting->volume[i] < 0 ? -o->patches[i].area : o->patches[i].area;
+    if (solid[i] && containment->parent[i] == VXM_NO_COMPONENT && containment->volume[i] != 0) {
+      outward += containment->volume[i] < 0 ? -o->patches[i].area : o->patches[i].area;
       bounding += o->patches[i].area;
     }
   }
@@ -348,16 +348,16 @@ static bool is_inside_out(const orienting *o, const vxm_containment *nesting, co
 }
 
 /** What lies inside what, and the volumes; freed with vxm_containment_destroy. */
-static bool find_nesting(orienting *o, const uint8_t *solid, vxm_containment *nesting) {
+static bool find_containment(orienting *o, const uint8_t *solid, vxm_containment *containment) {
   if (o->patch_count > 1 || !is_consistent(o))
-    return vxm_containment_build(nesting, o->soup, o->label, o->patch_count, solid, &o->error) == VXM_OK;
-  *nesting = (vxm_containment){.context = o->state->context, .count = 1};
-  nesting->parent = allocate(o, 1, sizeof *nesting->parent);
-  nesting->volume = allocate(o, 1, sizeof *nesting->volume);
-  if (!nesting->parent || !nesting->volume)
+    return vxm_containment_build(containment, o->soup, o->label, o->patch_count, solid, &o->error) == VXM_OK;
+  *containment = (vxm_containment){.context = o->state->context, .count = 1};
+  containment->parent = allocate(o, 1, sizeof *containment->parent);
+  containment->volume = allocate(o, 1, sizeof *containment->volume);
+  if (!containment->parent || !containment->volume)
     return false;
-  nesting->parent[0] = VXM_NO_COMPONENT;
-  nesting->volume[0] = o->volume;
+  containment->parent[0] = VXM_NO_COMPONENT;
+  containment->volume[0] = o->volume;
   return true;
 }
 
@@ -366,16 +366,16 @@ static bool turn_outward(orienting *o) {
   uint8_t *solid = allocate(o, count, sizeof *solid), *over = allocate(o, count, sizeof *over);
   uint8_t *known = allocate(o, count, sizeof *known), *held = allocate(o, count, sizeof *held);
   size_t *chain = allocate(o, count, sizeof *chain);
-  vxm_containment nesting = {0};
+  vxm_containment containment = {0};
   bool done = solid && over && known && held && chain && find_held(o, held);
   for (size_t i = 0; done && i < count; i++)
     solid[i] = is_closed_or_nearly(&o->patches[i]);
-  if (done && find_nesting(o, solid, &nesting)) {
+  if (done && find_containment(o, solid, &containment)) {
     double unit = o->frame.scale * o->frame.scale * o->frame.scale;
     for (size_t i = 0; i < count; i++)
-      if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
-        nesting.volume[i] = 0;
-    choose_sides(&nesting, solid, held, is_inside_out(o, &nesting, solid), over, known, chain);
+      if (!(fabs(containment.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
+        containment.volume[i] = 0;
+    choose_sides(&containment, solid, held, is_inside_out(o, &containment, solid), over, known, chain);
     bool any = memchr(over, 1, count) != NULL;
     for (size_t f = 0; any && f < o->soup->face_count; f++)
       if (over[o->label[f]]) {
@@ -384,7 +384,7 @@ static bool turn_outward(orienting *o) {
       }
   }
   done = o->error.code == VXM_OK;
-  vxm_containment_destroy(&nesting);
+  vxm_containment_destroy(&containment);
   vxm_free(o->state->context, chain);
   vxm_free(o->state->context, held);
   vxm_free(o->state->context, known);

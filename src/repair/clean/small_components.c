@@ -65,9 +65,9 @@ static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
     return status;
   for (size_t f = 0; f < faces; f++)
     remove[f] = d->label[f] != largest && is_small(d, &d->parts[d->label[f]]);
-  for (size_t f = 0; f < faces && state->track && state->soup->face_parts; f++)
+  for (size_t f = 0; f < faces && state->provenance && state->soup->face_parts; f++)
     if (remove[f])
-      vxm_provenance_drop(state->track, state->soup->face_parts[f]);
+      vxm_provenance_drop(state->provenance, state->soup->face_parts[f]);
   int64_t count = vxm_repair_state_remove_faces(state, remove);
   state->counts[VXM_PASS_SMALL_PARTS] += count;
   *changed = count > 0;

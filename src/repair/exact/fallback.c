@@ -160,8 +160,8 @@ vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *
     *changed = true;
     state->wrapped += count;
     state->ununited = 0;
-    if (state->track)
-      vxm_provenance_forget_left(state->track);
+    if (state->provenance)
+      vxm_provenance_forget_left(state->provenance);
   }
   vxm_free(state->context, faces);
   return status;

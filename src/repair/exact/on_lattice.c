@@ -31,7 +31,7 @@ static vxm_status copy(vxm_soup **out, uint8_t **turned, const vxm_soup *soup, c
 
 vxm_status vxm_before_union_keep(vxm_before_union *out, const vxm_repair_state *state, vxm_error *error) {
   out->state = *state;
-  vxm_status status = state->track ? vxm_provenance_remember(state->track, error) : VXM_OK;
+  vxm_status status = state->provenance ? vxm_provenance_remember(state->provenance, error) : VXM_OK;
   return status != VXM_OK ? status : copy(&out->soup, &out->turned, state->soup, state->turned, error);
 }
 
@@ -71,8 +71,8 @@ vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_unio
   state->used = used;
   state->has_counts = state->has_edges = state->has_patches = state->has_extent = state->has_sums =
       state->is_manifold = false; /* it was of another soup */
-  if (state->track)
-    vxm_provenance_recall(state->track);
+  if (state->provenance)
+    vxm_provenance_recall(state->provenance);
   return vxm_repair_state_renew(state, error);
 }
 

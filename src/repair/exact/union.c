@@ -38,14 +38,14 @@ static vxm_status mark_crossing(leaving *l, const vxm_soup *soup, vxm_error *err
 
 static void tell(leaving *l, const vxm_soup *soup) {
   vxm_repair_state *state = l->state;
-  const uint32_t *parts = state->track ? state->soup->face_parts : NULL;
+  const uint32_t *parts = state->provenance ? state->soup->face_parts : NULL;
   if (!parts)
     state->ununited = 0; /* of an earlier round; parts that are followed count once */
   for (size_t c = 0; !parts && c < l->count; c++)
     state->ununited += l->left[c];
   for (size_t f = 0; parts && f < soup->face_count; f++)
     if (l->left[l->component[f]] && l->origin[f] != VXM_NO_FACE)
-      state->ununited += vxm_provenance_leave(state->track, parts[l->origin[f]]);
+      state->ununited += vxm_provenance_leave(state->provenance, parts[l->origin[f]]);
 }
 
 /** Counts and names the parts that were left: those of the mesh as it was read, if they are followed. What is
@@ -74,10 +74,10 @@ static vxm_status find_left(vxm_repair_state *state, const vxm_soup *soup, const
 static vxm_status note_swallowed(vxm_repair_state *state, const vxm_soup *soup, const uint64_t *origin,
                                  vxm_error *error) {
   const uint32_t *parts = state->soup->face_parts;
-  if (!state->track || !parts)
+  if (!state->provenance || !parts)
     return VXM_OK;
   vxm_status status = VXM_OK;
-  size_t count = vxm_provenance_part_count(state->track);
+  size_t count = vxm_provenance_part_count(state->provenance);
   uint8_t *here = vxm_repair_state_scratch(state, count, sizeof *here, &status, error);
   for (size_t f = 0; here && f < state->soup->face_count; f++)
     here[parts[f]] |= 1;
@@ -86,7 +86,7 @@ static vxm_status note_swallowed(vxm_repair_state *state, const vxm_soup *soup, 
       here[parts[origin[f]]] |= 2;
   for (size_t p = 0; here && p < count; p++)
     if (here[p] == 1)
-      vxm_provenance_drop(state->track, (uint32_t)p);
+      vxm_provenance_drop(state->provenance, (uint32_t)p);
   vxm_free(state->context, here);
   return status;
 }

@@ -7,13 +7,13 @@
 
 /**
  * Closes the loops of at most `most` odd edges, so that every edge gets an even number of sides. Components
- * that their caps would cover, sheets, are left open and counted in work->open_parts.
+ * that their caps would cover, sheets, are left open and counted in state->open_parts.
  *
  * @param[out] closed how many loops
  */
 vxm_status vxm_fill_fans(vxm_repair_state *state, size_t most, int64_t *closed, vxm_error *error);
 
-/** Marks the faces of sheets (face_count elements), and counts the sheets in work->open_parts. */
+/** Marks the faces of sheets (face_count elements), and counts the sheets in state->open_parts. */
 vxm_status vxm_find_sheets(uint8_t *faces, vxm_repair_state *state, vxm_error *error);
 
 #endif

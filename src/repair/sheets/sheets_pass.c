@@ -58,9 +58,9 @@ static vxm_status find_open(uint8_t *faces, int64_t *count, vxm_repair_state *st
 /** Parts of which nothing else is left are to go. */
 static void note_dropped(vxm_repair_state *state, const uint8_t *sheets) {
   const vxm_soup *soup = state->soup;
-  for (size_t f = 0; state->track && soup->face_parts && f < soup->face_count; f++)
+  for (size_t f = 0; state->provenance && soup->face_parts && f < soup->face_count; f++)
     if (sheets[f])
-      vxm_provenance_drop(state->track, soup->face_parts[f]);
+      vxm_provenance_drop(state->provenance, soup->face_parts[f]);
 }
 
 /** Puts what the sheets become in their place. */

@@ -140,8 +140,8 @@ int64_t vxm_repair_state_merge(vxm_repair_state *state, const uint32_t *map) {
       count += !state->gone[v];
       state->gone[v] = 1;
     }
-  if (state->track)
-    vxm_provenance_merge(state->track, map);
+  if (state->provenance)
+    vxm_provenance_merge(state->provenance, map);
   if (count > 0) {
     merging m = {state->soup, map};
     vxm_parallel(state->context, state->soup->corner_count / CORNERS_PER_SLICE + 1, merge_slice, &m);

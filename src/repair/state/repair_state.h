@@ -71,18 +71,18 @@ typedef struct vxm_repair_state {
   int64_t filled;                          /**< holes that were filled */
   int64_t unfilled;                        /**< holes that were to be filled and could not be */
   int64_t fanned;                          /**< holes that a module left to fans */
-  int64_t ununited;      /**< parts that were to be united and still cut through themselves or others */
-  int64_t tries;         /**< of the union */
-  int64_t wrapped;       /**< parts that were wrapped as the union had left them */
-  bool collapses;        /**< the shortest edges of unions are collapsed */
-  bool doubles_only;     /**< vertices are not to differ as 32-bit floats: that would have faces meet */
-  int64_t crossings[2];  /**< self-intersections before and after, or -1 */
-  int64_t together;      /**< vertices that were to be moved apart and could not be */
-  vxm_provenance *track; /**< what becomes of the parts, or NULL */
-  vxm_lost_parts lost;   /**< parts that a first run would have lost; while soup->face_parts tells a face's
-                            part, no  kind of repeated face of theirs goes altogether */
-  bool guards;           /**< this run is to keep those */
-  int64_t lost_parts;    /**< that are lost for all that */
+  int64_t ununited;           /**< parts that were to be united and still cut through themselves or others */
+  int64_t tries;              /**< of the union */
+  int64_t wrapped;            /**< parts that were wrapped as the union had left them */
+  bool collapses;             /**< the shortest edges of unions are collapsed */
+  bool doubles_only;          /**< vertices are not to differ as 32-bit floats: that would have faces meet */
+  int64_t crossings[2];       /**< self-intersections before and after, or -1 */
+  int64_t together;           /**< vertices that were to be moved apart and could not be */
+  vxm_provenance *provenance; /**< what becomes of the parts, or NULL */
+  vxm_lost_parts lost; /**< parts that a first run would have lost; while soup->face_parts tells a face's
+                          part, no  kind of repeated face of theirs goes altogether */
+  bool guards;         /**< this run is to keep those */
+  int64_t lost_parts;  /**< that are lost for all that */
 } vxm_repair_state;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */

@@ -8,7 +8,7 @@ size_t vxm_voxel_format_bytes(vxm_voxel_format format) {
 }
 
 void vxm_device_voxels_drop(vxm_device_voxels *voxels) {
-  if (!voxels || atomic_fetch_sub_explicit(&voxels->holders, 1, memory_order_acq_rel) != 1)
+  if (!voxels || atomic_fetch_sub_explicit(&voxels->reference_count, 1, memory_order_acq_rel) != 1)
     return;
   vxm_context *context = voxels->context;
   voxels->release(voxels);
@@ -64,7 +64,7 @@ vxm_status vxm_device_voxels_share(struct DLManagedTensor **out, vxm_device_voxe
                                                       .strides = made->strides + first},
                                            .owner = voxels,
                                            .deleter = delete_shared};
-  atomic_fetch_add_explicit(&voxels->holders, 1, memory_order_relaxed);
+  atomic_fetch_add_explicit(&voxels->reference_count, 1, memory_order_relaxed);
   *out = &made->managed;
   return VXM_OK;
 }

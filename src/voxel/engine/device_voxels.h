@@ -10,16 +10,16 @@
 
 struct vxm_device_voxels {
   vxm_device_info info;
-  vxm_context *context; /**< one reference held */
-  size_t bytes;         /**< counted against its memory limit */
-  atomic_int holders;   /**< the caller and tensors */
-  vxm_layout layout;    /**< of the windows that become voxels */
-  bool is_batch;        /**< a tensor of them has variants first */
+  vxm_context *context;       /**< one reference held */
+  size_t bytes;               /**< counted against its memory limit */
+  atomic_int reference_count; /**< held by the caller and by tensors */
+  vxm_layout layout;          /**< of the windows that become voxels */
+  bool is_batch;              /**< a tensor of them has variants first */
   /** Frees what is on the device; set by the engine. */
   void (*release)(vxm_device_voxels *voxels);
 };
 
-/** One holder fewer; the last one drops the voxels. NULL is allowed. */
+/** One reference fewer; with the last one the voxels are destroyed. NULL is allowed. */
 void vxm_device_voxels_drop(vxm_device_voxels *voxels);
 
 /** See vxm_device_voxels_dlpack in voxmend/experimental.h; of a buffer. */

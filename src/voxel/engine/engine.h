@@ -85,14 +85,14 @@ typedef struct vxm_engine_ops {
 } vxm_engine_ops;
 
 struct vxm_engine {
-  const vxm_engine_ops *ops; /**< NULL: the CPU */
-  vxm_context *context;      /**< one reference held */
-  bool wants_apexes;         /**< apexes have to be placed */
-  bool displaces;            /**< its voxels are those of a mesh whose vertices it has moved */
-  bool falls_back;           /**< where it fails, the CPU does the work, and `info.note` says so */
-  bool keeps;                /**< what is made stays on the device */
-  bool needs_host;           /**< what should have stayed cannot be made without the CPU */
-  atomic_int holders;        /**< who made it, and voxels in its context */
+  const vxm_engine_ops *ops;  /**< NULL: the CPU */
+  vxm_context *context;       /**< one reference held */
+  bool wants_apexes;          /**< apexes have to be placed */
+  bool displaces;             /**< its voxels are those of a mesh whose vertices it has moved */
+  bool falls_back;            /**< where it fails, the CPU does the work, and `info.note` says so */
+  bool keeps;                 /**< what is made stays on the device */
+  bool needs_host;            /**< what should have stayed cannot be made without the CPU */
+  atomic_int reference_count; /**< held by who made it, and by voxels in its context */
   vxm_engine_info info;
 };
 

@@ -18,11 +18,11 @@ vxm_status vxm_field_plan_of(vxm_field_plan *out, const vxm_model *model, const 
   uint64_t slice = out->bits.slice_words * sizeof(uint64_t) * (uint64_t)subdivision;
   uint64_t most = most_bytes / (slice + value_bytes + 1);
   for (int worst = 0; worst < 2; worst++) {
-    vxm_memory_need demand = {0, 0};
+    vxm_memory_need need = {0, 0};
     if (subdivision > 0)
-      demand = vxm_model_memory_need(model, space, &out->bits, worst, centres);
-    uint64_t beside = saturating_sum(demand.fixed, fixed);
-    uint64_t each = slice * (uint64_t)demand.windows + value_bytes + 1;
+      need = vxm_model_memory_need(model, space, &out->bits, worst, centres);
+    uint64_t beside = saturating_sum(need.fixed, fixed);
+    uint64_t each = slice * (uint64_t)need.windows + value_bytes + 1;
     uint64_t room = left > beside ? (left - beside) / each : 0;
     int64_t slices = vxm_min(vxm_max((int64_t)(room < most ? room : most), least), length);
     uint64_t memory = saturating_sum(beside, (uint64_t)slices * each);

@@ -59,8 +59,8 @@ static bool spans_along_rows(const slab *s, uint64_t *records, size_t count) {
   return any;
 }
 
-/** Columns of `length` voxels that lie across words: `key` is the column times the length plus the place in
- * it. */
+/** Columns of `length` voxels that lie across words: records become the column times the length plus the
+ * place in it, and are sorted by that. */
 static bool spans_across(const slab *s, uint64_t *records, size_t count) {
   const unite_state *state = s->state;
   const vxm_window *window = state->window;

@@ -45,7 +45,7 @@ typedef struct vxm_snapped_points {
 vxm_status vxm_snapped_points_set(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                   const vxm_lattice *lattice, const double transform[12], bool apexes,
                                   vxm_error *error);
-/** The same for points that move first; `from` has those before first_apex. */
+/** The same for points that move first; motion->from has those before first_apex. */
 vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                    const vxm_lattice *lattice, const vxm_vertex_transform *motion,
                                    bool apexes, vxm_error *error);

@@ -169,19 +169,19 @@ static vxm_status find_cavities(builder *b, vxm_error *error) {
   }
   vxm_status status = VXM_OK;
   if (b->rule.split_mode == VXM_SPLIT_MODE_AUTO && b->rule.cavities != VXM_CAVITIES_FILL && solid_count > 1) {
-    vxm_containment nesting;
-    status = vxm_containment_build(&nesting, b->soup, s->component, s->component_count, solid, error);
+    vxm_containment containment;
+    status = vxm_containment_build(&containment, b->soup, s->component, s->component_count, solid, error);
     for (size_t c = 0; status == VXM_OK && c < s->component_count; c++) {
-      uint32_t parent = nesting.parent[c];
+      uint32_t parent = containment.parent[c];
       if (parent == VXM_NO_COMPONENT)
         continue;
-      bool against = (nesting.volume[c] < 0) != (nesting.volume[parent] < 0);
+      bool against = (containment.volume[c] < 0) != (containment.volume[parent] < 0);
       if (against || b->rule.cavities == VXM_CAVITIES_KEEP) {
         b->root[c] = parent;
         s->cavity_count++;
       }
     }
-    vxm_containment_destroy(&nesting);
+    vxm_containment_destroy(&containment);
   }
   /* A part with a capped component is capped. */
   for (size_t c = 0; status == VXM_OK && c < s->component_count; c++)

@@ -70,11 +70,11 @@ static vxm_status lock(pthread_mutex_t *mutex, vxm_context *context, vxm_error *
 
 static vxm_status make_chain(vxm_winding_chain *out, const vxm_mesh_analysis *analysis,
                              vxm_facing_finder find, void *payload, vxm_error *error) {
-  vxm_facings turns = {.context = analysis->context};
-  vxm_status status = find(&turns, analysis, payload, error);
+  vxm_facings facings = {.context = analysis->context};
+  vxm_status status = find(&facings, analysis, payload, error);
   if (status == VXM_OK)
-    status = vxm_oriented_chain_create(out, &analysis->triangles, &turns, error);
-  vxm_facings_destroy(&turns);
+    status = vxm_oriented_chain_create(out, &analysis->triangles, &facings, error);
+  vxm_facings_destroy(&facings);
   return status;
 }
 

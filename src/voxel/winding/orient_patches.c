@@ -292,7 +292,7 @@ vxm_status vxm_orient_patches_find(vxm_facings *out, const vxm_triangle_set *tri
   return b.error.code;
 }
 
-void vxm_facings_destroy(vxm_facings *turns) {
-  vxm_free(turns->context, turns->facing);
-  *turns = (vxm_facings){.context = turns->context};
+void vxm_facings_destroy(vxm_facings *facings) {
+  vxm_free(facings->context, facings->facing);
+  *facings = (vxm_facings){.context = facings->context};
 }

@@ -35,6 +35,6 @@ typedef struct vxm_facings {
 vxm_status vxm_orient_patches_find(vxm_facings *out, const vxm_triangle_set *triangles,
                                    const vxm_snapped_points *placed, size_t part_begin, size_t part_end,
                                    const uint64_t *const voters[3], bool leave_untold, vxm_error *error);
-void vxm_facings_destroy(vxm_facings *turns);
+void vxm_facings_destroy(vxm_facings *facings);
 
 #endif

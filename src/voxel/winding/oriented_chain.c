@@ -2,19 +2,19 @@
 #include "voxel/winding/oriented_chain.h"
 
 vxm_status vxm_oriented_chain_create(vxm_winding_chain *out, const vxm_triangle_set *triangles,
-                                     const vxm_facings *turns, vxm_error *error) {
+                                     const vxm_facings *facings, vxm_error *error) {
   vxm_context *context = triangles->context;
   vxm_error local = VXM_ERROR_INIT;
   *out = (vxm_winding_chain){.context = context};
-  uint32_t(*corners)[3] = vxm_alloc(context, turns->count, sizeof *corners, &local);
+  uint32_t(*corners)[3] = vxm_alloc(context, facings->count, sizeof *corners, &local);
   if (!corners) {
     vxm_error_pass(error, &local);
     return local.code;
   }
   size_t t = 0, seen = 0;
-  for (size_t p = turns->part_begin; p < turns->part_end; p++)
+  for (size_t p = facings->part_begin; p < facings->part_end; p++)
     for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++) {
-      int facing = turns->facing[seen++];
+      int facing = facings->facing[seen++];
       if (facing == VXM_FACING_UNTOLD)
         continue;
       for (int k = 0; k < 3; k++)

@@ -8,6 +8,6 @@
 
 /** Makes the chain of the triangles that a mask says how to turn. @return as vxm_winding_chain_create */
 vxm_status vxm_oriented_chain_create(vxm_winding_chain *out, const vxm_triangle_set *triangles,
-                                     const vxm_facings *turns, vxm_error *error);
+                                     const vxm_facings *facings, vxm_error *error);
 
 #endif
