@@ -202,7 +202,7 @@ typedef struct batch_job {
   const char *const *paths;
   const char *format;
   bool *written;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
   atomic_flag lock; /**< of what follows */
   atomic_size_t
       failed_at;   /**< the first in order that failed, whichever thread came first; SIZE_MAX = none */
@@ -237,12 +237,12 @@ static void note_failure(batch_job *job, size_t v, const vxm_error *error) {
     job->error = *error;
   }
   atomic_flag_clear_explicit(&job->lock, memory_order_release);
-  atomic_store_explicit(&job->watch.stop, true, memory_order_release);
+  atomic_store_explicit(&job->progress.stop, true, memory_order_release);
 }
 
 static void make_task(size_t v, int worker, void *payload) {
   batch_job *job = payload;
-  if (vxm_task_progress_stopped(&job->watch, worker)) {
+  if (vxm_task_progress_stopped(&job->progress, worker)) {
     atomic_thread_fence(memory_order_acquire);
     size_t failed_at = atomic_load(&job->failed_at);
     if (failed_at == SIZE_MAX || v > failed_at)
@@ -252,7 +252,7 @@ static void make_task(size_t v, int worker, void *payload) {
   vxm_status status = make_one(job, v, &job->sampler->workers[worker], &error);
   if (status != VXM_OK)
     note_failure(job, v, &error);
-  vxm_task_progress_step(&job->watch);
+  vxm_task_progress_step(&job->progress);
 }
 
 /** One variant for each thread at a time. */
@@ -263,10 +263,10 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
     if (status != VXM_OK)
       return status;
   }
-  vxm_task_progress_start(&job->watch, sampler->context, "making variants", count, error);
+  vxm_task_progress_start(&job->progress, sampler->context, "making variants", count, error);
   vxm_parallel(sampler->context, count, make_task, job);
   if (atomic_load(&job->failed_at) == SIZE_MAX)
-    return vxm_task_progress_end(&job->watch);
+    return vxm_task_progress_end(&job->progress);
   vxm_error_pass(error, &job->error);
   return job->error.code;
 }

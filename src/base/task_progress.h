@@ -18,38 +18,38 @@ typedef struct vxm_task_progress {
   vxm_error *error;
 } vxm_task_progress;
 
-static inline void vxm_task_progress_start(vxm_task_progress *watch, vxm_context *in, const char *phase,
+static inline void vxm_task_progress_start(vxm_task_progress *progress, vxm_context *in, const char *phase,
                                            size_t total, vxm_error *error) {
-  watch->context = in;
-  watch->phase = phase;
-  watch->total = total > 0 ? total : 1;
-  watch->status = VXM_OK;
-  watch->error = error;
-  atomic_init(&watch->done, 0);
-  atomic_init(&watch->stop, false);
+  progress->context = in;
+  progress->phase = phase;
+  progress->total = total > 0 ? total : 1;
+  progress->status = VXM_OK;
+  progress->error = error;
+  atomic_init(&progress->done, 0);
+  atomic_init(&progress->stop, false);
 }
 
 /** To be asked before each step: whether to leave it out, because the work has been cancelled. */
-static inline bool vxm_task_progress_stopped(vxm_task_progress *watch, int worker) {
-  if (worker == 0 && watch->status == VXM_OK) {
-    size_t done = atomic_load_explicit(&watch->done, memory_order_relaxed);
-    watch->status =
-        vxm_progress(watch->context, watch->phase, (double)done / (double)watch->total, watch->error);
-    if (watch->status != VXM_OK)
-      atomic_store_explicit(&watch->stop, true, memory_order_relaxed);
+static inline bool vxm_task_progress_stopped(vxm_task_progress *progress, int worker) {
+  if (worker == 0 && progress->status == VXM_OK) {
+    size_t done = atomic_load_explicit(&progress->done, memory_order_relaxed);
+    progress->status = vxm_progress(progress->context, progress->phase,
+                                    (double)done / (double)progress->total, progress->error);
+    if (progress->status != VXM_OK)
+      atomic_store_explicit(&progress->stop, true, memory_order_relaxed);
   }
-  return atomic_load_explicit(&watch->stop, memory_order_relaxed);
+  return atomic_load_explicit(&progress->stop, memory_order_relaxed);
 }
 
-static inline void vxm_task_progress_step(vxm_task_progress *watch) {
-  atomic_fetch_add_explicit(&watch->done, 1, memory_order_relaxed);
+static inline void vxm_task_progress_step(vxm_task_progress *progress) {
+  atomic_fetch_add_explicit(&progress->done, 1, memory_order_relaxed);
 }
 
 /** After the work: asks once more, as other threads may have taken the last steps, so that no wish to stop is
  * missed. */
-static inline vxm_status vxm_task_progress_end(vxm_task_progress *watch) {
-  return watch->status == VXM_OK ? vxm_progress(watch->context, watch->phase, 1.0, watch->error)
-                                 : watch->status;
+static inline vxm_status vxm_task_progress_end(vxm_task_progress *progress) {
+  return progress->status == VXM_OK ? vxm_progress(progress->context, progress->phase, 1.0, progress->error)
+                                    : progress->status;
 }
 
 #endif

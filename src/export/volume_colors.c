@@ -10,7 +10,7 @@ typedef struct volume_task {
   vxm_volume_sampler sampler;
   const vxm_grid *grid;
   uint8_t *values;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } volume_task;
 
 vxm_status vxm_volume_colors_check(const vxm_field *volume, const vxm_space *space, vxm_error *error) {
@@ -126,21 +126,21 @@ static void color_slice(size_t i, int worker, void *payload) {
   const vxm_space *space = &task->grid->space;
   size_t plane = (size_t)(space->dims[1] * space->dims[2]);
   uint8_t *to = task->values + 4 * i * plane;
-  if (vxm_task_progress_stopped(&task->watch, worker))
+  if (vxm_task_progress_stopped(&task->progress, worker))
     return;
   memset(to, 0, 4 * plane);
   for (int64_t j = 0; j < space->dims[1]; j++)
     for (int64_t k = 0; k < space->dims[2]; k++, to += 4)
       if (vxm_grid_get(task->grid, (int64_t)i, j, k))
         vxm_volume_color(to, &task->sampler, space, (const int64_t[3]){(int64_t)i, j, k});
-  vxm_task_progress_step(&task->watch);
+  vxm_task_progress_step(&task->progress);
 }
 
 vxm_status vxm_volume_colors(uint8_t *values, const vxm_grid *grid, const vxm_field *volume,
                              vxm_error *error) {
   volume_task task = {.sampler = vxm_volume_sampler_of(volume), .grid = grid, .values = values};
   size_t slices = (size_t)grid->space.dims[0];
-  vxm_task_progress_start(&task.watch, grid->context, "colouring", slices, error);
+  vxm_task_progress_start(&task.progress, grid->context, "colouring", slices, error);
   vxm_parallel(grid->context, slices, color_slice, &task);
-  return vxm_task_progress_end(&task.watch);
+  return vxm_task_progress_end(&task.progress);
 }

@@ -14,11 +14,11 @@ typedef struct transfer {
   uint8_t *to;         /**< where they are unpacked */
   const uint8_t *from; /**< where they are packed */
   bool is_asked;       /**< may be cancelled */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } transfer;
 
 static bool is_stopped(transfer *t, int worker) {
-  return t->is_asked && vxm_task_progress_stopped(&t->watch, worker);
+  return t->is_asked && vxm_task_progress_stopped(&t->progress, worker);
 }
 
 /** The columns of the range that lie in word w: first and number. */
@@ -51,7 +51,7 @@ static void unpack_layer(size_t j, int worker, void *payload) {
       }
     }
   if (t->is_asked)
-    vxm_task_progress_step(&t->watch);
+    vxm_task_progress_step(&t->progress);
 }
 
 /** The same the other way; other columns of a word stay. */
@@ -76,15 +76,15 @@ static void pack_layer(size_t j, int worker, void *payload) {
       }
     }
   if (t->is_asked)
-    vxm_task_progress_step(&t->watch);
+    vxm_task_progress_step(&t->progress);
 }
 
 static vxm_status run(transfer *t, const char *phase, vxm_task_fn layer, vxm_error *error) {
   size_t layers = (size_t)t->grid->space.dims[1];
   t->is_asked = true;
-  vxm_task_progress_start(&t->watch, t->grid->context, phase, layers, error);
+  vxm_task_progress_start(&t->progress, t->grid->context, phase, layers, error);
   vxm_parallel(t->grid->context, layers, layer, t);
-  return vxm_task_progress_end(&t->watch);
+  return vxm_task_progress_end(&t->progress);
 }
 
 static vxm_status check(const vxm_grid *grid, int64_t begin, int64_t end, const void *bytes,

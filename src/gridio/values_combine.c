@@ -222,7 +222,7 @@ typedef struct job {
   vxm_set_operation operation;
   uint16_t *numbers;
   unsigned char *rows; /**< of each worker: a row of the second operand */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } job;
 
 static vxm_values_type type_of(const vxm_field *field) {
@@ -234,7 +234,7 @@ static void combine_slice(size_t x, int worker, void *payload) {
   const int64_t *dims = j->out->space.dims;
   size_t row = (size_t)dims[2], size = vxm_values_bytes(j->type);
   unsigned char *other = j->rows + (size_t)worker * row * size;
-  if (vxm_task_progress_stopped(&j->watch, worker))
+  if (vxm_task_progress_stopped(&j->progress, worker))
     return;
   for (size_t y = 0; y < (size_t)dims[1]; y++) {
     size_t first = (x * (size_t)dims[1] + y) * row;
@@ -244,7 +244,7 @@ static void combine_slice(size_t x, int worker, void *payload) {
                        j->numbers);
     vxm_values_combine(to, other, row, j->type, j->operation);
   }
-  vxm_task_progress_step(&j->watch);
+  vxm_task_progress_step(&j->progress);
 }
 
 static vxm_status combine_all(job *j, vxm_error *error) {
@@ -256,10 +256,10 @@ static vxm_status combine_all(job *j, vxm_error *error) {
     vxm_error_pass(error, &local);
     return local.code;
   }
-  vxm_task_progress_start(&j->watch, context, "combining", slices, error);
+  vxm_task_progress_start(&j->progress, context, "combining", slices, error);
   vxm_parallel(context, slices, combine_slice, j);
   vxm_free(context, j->rows);
-  return vxm_task_progress_end(&j->watch);
+  return vxm_task_progress_end(&j->progress);
 }
 
 /** Whether values of the second operand come into the result. */

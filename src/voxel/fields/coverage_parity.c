@@ -36,7 +36,7 @@ typedef struct parity_job {
   vxm_columns columns;
   vxm_chain_winding *chain; /**< of parts that lie in themselves; NULL = there are none */
   atomic_int failed;        /**< a vxm_status */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } parity_job;
 
 bool vxm_coverage_by_parity(const vxm_model_pass *pass) {
@@ -139,7 +139,7 @@ static bool take_wound(parity_job *job, scratch *s, size_t slice) {
 /** A slice of voxels. */
 static void do_slice(size_t task, int worker, void *payload) {
   parity_job *job = payload;
-  if (vxm_task_progress_stopped(&job->watch, worker))
+  if (vxm_task_progress_stopped(&job->progress, worker))
     return;
   scratch *s = &job->scratch->of[worker];
   size_t some_rows = job->scratch->some_rows;
@@ -154,7 +154,7 @@ static void do_slice(size_t task, int worker, void *payload) {
     vxm_coverage_put_rows(&s->all, left < some_rows ? left : some_rows, &writer);
   }
   vxm_coverage_writer_end(&writer);
-  vxm_task_progress_step(&job->watch);
+  vxm_task_progress_step(&job->progress);
 }
 
 /* ---- All of it ---- */
@@ -198,10 +198,10 @@ void vxm_coverage_scratch_destroy(vxm_coverage_scratch *of) {
 
 /** Puts the crossings of parts that lie in themselves into their bins. */
 static vxm_status raster_chain(parity_job *job, size_t slices, vxm_error *error) {
-  if (!job->chain || job->watch.status != VXM_OK)
+  if (!job->chain || job->progress.status != VXM_OK)
     return VXM_OK;
   return vxm_chain_winding_raster(job->chain, job->pass->solid.workspace, &job->pass->solid.placed,
-                                  &job->columns, slices, &job->watch, error);
+                                  &job->columns, slices, &job->progress, error);
 }
 
 static vxm_status check_slices(parity_job *job, vxm_error *error) {
@@ -215,19 +215,19 @@ static vxm_status run(parity_job *job, size_t raster_steps, vxm_coverage_scratch
   vxm_context *context = job->pass->solid.context;
   size_t slices = (size_t)(job->fine.end - job->fine.begin) / (size_t)job->values->n,
          workers = (size_t)vxm_context_threads(context);
-  vxm_task_progress_start(&job->watch, context, "measuring coverage", raster_steps + slices, error);
-  vxm_raster_schedule_run(&job->pass->solid.workspace->crossings, 0, job->bins, &job->watch);
+  vxm_task_progress_start(&job->progress, context, "measuring coverage", raster_steps + slices, error);
+  vxm_raster_schedule_run(&job->pass->solid.workspace->crossings, 0, job->bins, &job->progress);
   vxm_status status = vxm_crossing_bins_check(job->bins, error);
   if (status == VXM_OK)
     status = raster_chain(job, slices, error);
   if (status == VXM_OK)
     status = make_scratch(job, kept, slices < workers ? slices : workers, error);
   job->scratch = *kept;
-  if (status == VXM_OK && job->watch.status == VXM_OK)
+  if (status == VXM_OK && job->progress.status == VXM_OK)
     vxm_parallel(context, slices, do_slice, job);
   if (status == VXM_OK)
     status = check_slices(job, error);
-  return status == VXM_OK ? vxm_task_progress_end(&job->watch) : status;
+  return status == VXM_OK ? vxm_task_progress_end(&job->progress) : status;
 }
 
 /** The chain of parts that lie in themselves, if there are any: placed, and its steps; `*few` becomes false

@@ -31,7 +31,7 @@ typedef struct measure {
   int64_t begin, end;    /**< these slices */
   int64_t across, down;  /**< tiles in a row, and rows of them in a slice */
   tally *tallies;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } measure;
 
 vxm_distance_way vxm_distance_way_of(bool is_whole, bool takes_tiles, const vxm_distance_options *options) {
@@ -104,13 +104,13 @@ static void finish_tile(const measure *m, const vxm_point_block *tile, const dou
 
 static void measure_tile(size_t task, int worker, void *payload) {
   measure *m = payload;
-  if (vxm_task_progress_stopped(&m->watch, worker))
+  if (vxm_task_progress_stopped(&m->progress, worker))
     return;
   vxm_point_block tile = tile_of(m, task);
   double *squares = m->squares + (size_t)worker * VXM_TILE_POINTS;
   bool is_met = m->find(m->searches[worker], squares, &tile);
   finish_tile(m, &tile, is_met ? squares : NULL, &m->tallies[worker]);
-  vxm_task_progress_step(&m->watch);
+  vxm_task_progress_step(&m->progress);
 }
 
 static vxm_status measure_slices(measure *m, const vxm_field_target *target, int64_t begin, int64_t end,
@@ -132,9 +132,9 @@ static vxm_status measure_slices(measure *m, const vxm_field_target *target, int
                : vxm_distance_band_measure(m->near, NULL, m->values, &m->solid, begin, end, m->search.side,
                                            m->tallies, error);
   size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
-  vxm_task_progress_start(&m->watch, m->context, "measuring distances", tiles, error);
+  vxm_task_progress_start(&m->progress, m->context, "measuring distances", tiles, error);
   vxm_parallel(m->context, tiles, measure_tile, m);
-  return vxm_task_progress_end(&m->watch);
+  return vxm_task_progress_end(&m->progress);
 }
 
 /* ---- Windows ---- */

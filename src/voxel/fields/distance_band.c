@@ -30,7 +30,7 @@ struct vxm_distance_band {
   vxm_band_values out;     /**< of the first slice */
   vxm_distance_tiles *put; /**< of each worker; NULL where values are written to `out` */
   vxm_band_tally *tallies;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 };
 
 static int64_t tiles_of(int64_t voxels) {
@@ -168,7 +168,7 @@ static void finish_tile(const vxm_distance_band *band, int worker, const vxm_ban
 
 static void measure_piece(size_t task, int worker, void *payload) {
   vxm_distance_band *band = payload;
-  if (vxm_task_progress_stopped(&band->watch, worker))
+  if (vxm_task_progress_stopped(&band->progress, worker))
     return;
   const int64_t *dims = band->clusters->grid.dims;
   size_t bin = band->first_bin + task / (size_t)band->pieces;
@@ -197,9 +197,9 @@ static void measure_piece(size_t task, int worker, void *payload) {
     finish_tile(band, worker, tile);
   }
   fill_tiles(band, worker, tile, filled, to);
-  vxm_task_progress_step(&band->watch);
+  vxm_task_progress_step(&band->progress);
   if (band->put && band->put[worker].error.code != VXM_OK)
-    atomic_store_explicit(&band->watch.stop, true, memory_order_relaxed);
+    atomic_store_explicit(&band->progress.stop, true, memory_order_relaxed);
 }
 
 /* ---- Slices ---- */
@@ -210,8 +210,9 @@ static vxm_status measure_bins(vxm_distance_band *band, vxm_error *error) {
   band->piece = vxm_max(1, band->across / (int64_t)pieces);
   band->pieces = (band->across + band->piece - 1) / band->piece;
   count_entries(band);
-  vxm_task_progress_start(&band->watch, context, "measuring distances", bins * (size_t)band->pieces, error);
-  for (size_t from = 0, to; from < bins && !atomic_load(&band->watch.stop); from = to) {
+  vxm_task_progress_start(&band->progress, context, "measuring distances", bins * (size_t)band->pieces,
+                          error);
+  for (size_t from = 0, to; from < bins && !atomic_load(&band->progress.stop); from = to) {
     band->first_bin = from;
     band->base = band->starts[from];
     for (to = from + 1; to < bins && band->starts[to + 1] - band->base <= band->capacity;)
@@ -224,7 +225,7 @@ static vxm_status measure_bins(vxm_distance_band *band, vxm_error *error) {
       vxm_error_pass(error, &band->put[w].error);
       return band->put[w].error.code;
     }
-  return vxm_task_progress_end(&band->watch);
+  return vxm_task_progress_end(&band->progress);
 }
 
 static vxm_status make_tiles(vxm_distance_band *band, const vxm_field_target *target, vxm_error *error) {

@@ -79,7 +79,7 @@ typedef struct color_task {
   const vxm_color_job *job;
   uint8_t *values;
   float longest;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } color_task;
 
 void vxm_color_voxel(uint8_t value[4], vxm_color_by by, const vxm_space *space, float longest,
@@ -108,14 +108,14 @@ static void color_slice(size_t i, int worker, void *payload) {
   color_task *task = payload;
   const int64_t *dims = task->job->grid->space.dims;
   size_t index = i * (size_t)(dims[1] * dims[2]);
-  if (vxm_task_progress_stopped(&task->watch, worker))
+  if (vxm_task_progress_stopped(&task->progress, worker))
     return;
   memset(task->values + 4 * index, 0, 4 * (size_t)(dims[1] * dims[2]));
   for (int64_t j = 0; j < dims[1]; j++)
     for (int64_t k = 0; k < dims[2]; k++, index++)
       if (vxm_grid_get(task->job->grid, (int64_t)i, j, k))
         color_voxel(task, (const int64_t[3]){(int64_t)i, j, k}, index);
-  vxm_task_progress_step(&task->watch);
+  vxm_task_progress_step(&task->progress);
 }
 
 double vxm_color_longest(const vxm_space *space) {
@@ -132,9 +132,9 @@ static vxm_status color_by_cpu(uint8_t *values, const vxm_color_job *job, vxm_co
   if (job->options->by == VXM_COLOR_GLSL)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
                     "a colour function in GLSL needs OpenGL: --engine opengl (vxm_voxelize_options.engine)");
-  vxm_task_progress_start(&task.watch, context, "colouring", slices, error);
+  vxm_task_progress_start(&task.progress, context, "colouring", slices, error);
   vxm_parallel(context, slices, color_slice, &task);
-  return vxm_task_progress_end(&task.watch);
+  return vxm_task_progress_end(&task.progress);
 }
 
 /* ---- All of it ---- */

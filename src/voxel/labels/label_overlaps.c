@@ -162,7 +162,7 @@ static void claim_tile(size_t task, int worker, void *payload) {
 static void settle_tile(size_t task, int worker, void *payload) {
   vxm_label_overlaps *c = payload;
   vxm_row_tile tile = vxm_row_tiles_at(&c->tiles, task), part;
-  if (vxm_task_progress_stopped(&c->watch, worker))
+  if (vxm_task_progress_stopped(&c->progress, worker))
     return;
   for (size_t i = 0; i < c->batch; i++) {
     const vxm_label_overlap *claim = &c->claim[i];
@@ -177,7 +177,7 @@ static void settle_tile(size_t task, int worker, void *payload) {
                   end[3] = {claim->window.fast_dim, part.end[0], part.end[1]};
     vxm_nearest_label_voxels(&nearest, begin, end);
   }
-  vxm_task_progress_step(&c->watch);
+  vxm_task_progress_step(&c->progress);
 }
 
 static vxm_status claim_batch(vxm_label_overlaps *c, vxm_error *error) {
@@ -194,9 +194,9 @@ static vxm_status claim_batch(vxm_label_overlaps *c, vxm_error *error) {
   vxm_status status = vxm_label_overlaps_need_bvh(c, error);
   if (status != VXM_OK)
     return status;
-  vxm_task_progress_start(&c->watch, c->context, "labelling", tiles, error);
+  vxm_task_progress_start(&c->progress, c->context, "labelling", tiles, error);
   vxm_parallel(c->context, tiles, settle_tile, c);
-  return vxm_task_progress_end(&c->watch);
+  return vxm_task_progress_end(&c->progress);
 }
 
 /* ---- All of it ---- */

@@ -40,7 +40,7 @@ typedef struct vxm_label_overlaps {
   vxm_label_overlap claim[VXM_CLAIMS_BATCH];
   vxm_row_tile tiles; /**< rows and slices that they have voxels in */
   atomic_bool has_failed;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } vxm_label_overlaps;
 
 /** Finds the open labels, and cuts all into pieces; @return as vxm_label_components_create. */

@@ -15,7 +15,7 @@ typedef struct job {
   size_t *small;                          /**< labels of small pieces alone */
   vxm_label_component_scratch *scratches; /**< of each thread */
   vxm_error *errors;                      /**< of each thread */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } job;
 
 static bool is_small(const vxm_label_component *piece) {
@@ -50,10 +50,10 @@ static vxm_status make_set(job *j, size_t label, int worker, vxm_error *error) {
 static void make_light(size_t task, int worker, void *payload) {
   job *j = payload;
   vxm_error *error = &j->errors[worker];
-  if (vxm_task_progress_stopped(&j->watch, worker) || error->code != VXM_OK)
+  if (vxm_task_progress_stopped(&j->progress, worker) || error->code != VXM_OK)
     return;
   make_set(j, j->small[task], worker, error);
-  vxm_task_progress_step(&j->watch);
+  vxm_task_progress_step(&j->progress);
 }
 
 /** Labels of small pieces by a thread each, then the others, each by all. */
@@ -63,7 +63,7 @@ static vxm_status make_sets(job *j, vxm_error *error) {
   for (size_t label = 0; label < labels; label++)
     if (is_light(j, label))
       j->small[light++] = label;
-  vxm_task_progress_start(&j->watch, j->out->context, "labelling", labels, error);
+  vxm_task_progress_start(&j->progress, j->out->context, "labelling", labels, error);
   vxm_parallel(j->out->context, light, make_light, j);
   for (int w = 0; w < vxm_context_threads(j->out->context) && status == VXM_OK; w++)
     if (j->errors[w].code != VXM_OK) {
@@ -76,12 +76,12 @@ static vxm_status make_sets(job *j, vxm_error *error) {
       next++;
       continue;
     }
-    if (vxm_task_progress_stopped(&j->watch, 0))
+    if (vxm_task_progress_stopped(&j->progress, 0))
       break;
     status = make_set(j, label, 0, error);
-    vxm_task_progress_step(&j->watch);
+    vxm_task_progress_step(&j->progress);
   }
-  return status == VXM_OK ? vxm_task_progress_end(&j->watch) : status;
+  return status == VXM_OK ? vxm_task_progress_end(&j->progress) : status;
 }
 
 static vxm_status allocate(job *j, vxm_error *error) {

@@ -20,7 +20,7 @@ typedef struct labels {
   atomic_bool has_open;        /**< voxels have an open label: `claims.several` from then on */
   const uint8_t *open;         /**< while these are settled, who takes them */
   atomic_int_fast64_t *counts; /**< of each label, the voxels that have it */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } labels;
 
 static size_t grid_words(const labels *l) {
@@ -94,7 +94,7 @@ static void settle_tile(size_t task, int worker, void *payload) {
   static const int64_t nowhere[3] = {0, 0, 0};
   labels *l = payload;
   const vxm_label_overlaps *c = &l->claims;
-  if (vxm_task_progress_stopped(&l->watch, worker))
+  if (vxm_task_progress_stopped(&l->progress, worker))
     return;
   vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
   const size_t row = (size_t)c->set.fast_dim, plane = row * (size_t)c->set.middle_dim;
@@ -104,7 +104,7 @@ static void settle_tile(size_t task, int worker, void *payload) {
   const int64_t begin[3] = {0, tile.begin[0], tile.begin[1]},
                 end[3] = {c->set.fast_dim, tile.end[0], tile.end[1]};
   vxm_nearest_label_voxels(&nearest, begin, end);
-  vxm_task_progress_step(&l->watch);
+  vxm_task_progress_step(&l->progress);
 }
 
 /** Gives what is left of the set voxels, or those with an open label, to the nearest label. */
@@ -113,9 +113,9 @@ static vxm_status settle(labels *l, vxm_error *error) {
   vxm_status status = vxm_label_overlaps_need_bvh(&l->claims, error);
   if (status != VXM_OK)
     return status;
-  vxm_task_progress_start(&l->watch, l->context, "labelling", tiles, error);
+  vxm_task_progress_start(&l->progress, l->context, "labelling", tiles, error);
   vxm_parallel(l->context, tiles, settle_tile, l);
-  return vxm_task_progress_end(&l->watch);
+  return vxm_task_progress_end(&l->progress);
 }
 
 static vxm_status settle_unassigned(labels *l, vxm_error *error) {

@@ -27,7 +27,7 @@ typedef struct vote_state {
   uint64_t *carries; /**< a slice for each stripe, and one for the end */
   atomic_int_fast64_t contested;
   atomic_bool added;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } vote_state;
 
 static size_t stripe_begin(const vote_state *state, size_t stripe) {
@@ -66,7 +66,7 @@ static void sum_stripe(size_t stripe, int worker, void *payload) {
   uint64_t *carry = state->carries + (stripe + 1) * window->slice_words;
   uint64_t *words = state->workspace->scratch + (size_t)worker * state->words_each;
   memset(carry, 0, window->slice_words * sizeof *carry);
-  if (stripe + 1 == state->stripes || vxm_task_progress_stopped(&state->watch, worker))
+  if (stripe + 1 == state->stripes || vxm_task_progress_stopped(&state->progress, worker))
     return;
   for (size_t slab = stripe_begin(state, stripe); slab < stripe_begin(state, stripe + 1); slab++) {
     if (!flip_slab(state, SLOW, slab, words))
@@ -192,7 +192,7 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
   for (size_t set = 0; set < SETS; set++)
     s.words[set] = scratch + set * state->slabs.words + (set == SLOW ? slice : 0);
   for (s.index = stripe_begin(state, stripe); s.index < stripe_begin(state, stripe + 1); s.index++) {
-    if (vxm_task_progress_stopped(&state->watch, worker))
+    if (vxm_task_progress_stopped(&state->progress, worker))
       break;
     const uint64_t *voters[4];
     int64_t first = (int64_t)s.index << state->slabs.shift;
@@ -201,7 +201,7 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
     fold_voters(state, &s, carry, voters);
     contested += vote_on_slab(state, &s, voters, &added);
     clear(&s, slice);
-    vxm_task_progress_step(&state->watch);
+    vxm_task_progress_step(&state->progress);
   }
   atomic_fetch_add_explicit(&state->contested, contested, memory_order_relaxed);
   if (added)
@@ -247,14 +247,14 @@ static void shape(vote_state *state) {
 
 static void put_edges(size_t task, int worker, void *payload) {
   vote_state *state = payload;
-  if (vxm_task_progress_stopped(&state->watch, worker))
+  if (vxm_task_progress_stopped(&state->progress, worker))
     return;
   size_t begin = state->edge_begin + task * EDGES_PER_TASK;
   size_t end = state->edge_end - begin < EDGES_PER_TASK ? state->edge_end : begin + EDGES_PER_TASK;
   for (size_t set = MIDDLE; set <= SLOW; set++)
     vxm_parity_difference_put(state->job->placed, state->job->triangles, begin, end, &state->columns[set],
                               &state->workspace->bins, (size_t)worker, set);
-  vxm_task_progress_step(&state->watch);
+  vxm_task_progress_step(&state->progress);
 }
 
 static void run_stripes(vote_state *state) {
@@ -285,8 +285,8 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
   atomic_init(&state.contested, 0);
   atomic_init(&state.added, false);
   size_t workers = (size_t)vxm_context_threads(context);
-  vxm_raster_schedule *crossings = &workspace->crossings;
-  vxm_status status = vxm_raster_schedule_plan(crossings, job->triangles, job->placed, state.columns,
+  vxm_raster_schedule *schedule = &workspace->crossings;
+  vxm_status status = vxm_raster_schedule_plan(schedule, job->triangles, job->placed, state.columns,
                                                job->tetra ? CONES + 1 : BASE + 1, error);
   if (status == VXM_OK)
     status = vxm_workspace_scratch(workspace, workers * state.words_each, error);
@@ -307,16 +307,16 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
     return local.code;
   }
   size_t edge_tasks = (state.edge_end - state.edge_begin + EDGES_PER_TASK - 1) / EDGES_PER_TASK;
-  vxm_task_progress_start(&state.watch, context, "voxelizing along x, y, z",
-                          crossings->range_count + edge_tasks + state.slabs.count, error);
-  vxm_raster_schedule_run(crossings, 0, &workspace->bins, &state.watch); /* one part is one round */
+  vxm_task_progress_start(&state.progress, context, "voxelizing along x, y, z",
+                          schedule->range_count + edge_tasks + state.slabs.count, error);
+  vxm_raster_schedule_run(schedule, 0, &workspace->bins, &state.progress); /* one part is one round */
   vxm_parallel(context, edge_tasks, put_edges, &state);
   status = vxm_crossing_bins_check(&workspace->bins, error);
-  if (status == VXM_OK && state.watch.status == VXM_OK)
+  if (status == VXM_OK && state.progress.status == VXM_OK)
     run_stripes(&state);
   vxm_free(context, state.carries);
   vxm_odd_lines_destroy(&state.odd);
   tally->contested += atomic_load(&state.contested);
   tally->added |= atomic_load(&state.added);
-  return status == VXM_OK ? vxm_task_progress_end(&state.watch) : status;
+  return status == VXM_OK ? vxm_task_progress_end(&state.progress) : status;
 }

@@ -27,7 +27,7 @@ typedef struct unite_state {
   size_t row_bits;
   uint64_t by_row_words; /**< 2^40 / words of a row, rounded up; 0 where that is not good enough to divide */
   size_t flipped_words;  /**< of slab.flipped */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } unite_state;
 
 /** A slab while it is folded. */
@@ -314,7 +314,7 @@ static void do_slab(size_t task, int worker, void *payload) {
   vxm_crossing_bins *bins = &state->workspace->bins;
   enum { WORKERS_MAX = 256 };
   vxm_crossing_bin_reader reader[WORKERS_MAX];
-  if (vxm_task_progress_stopped(&state->watch, worker))
+  if (vxm_task_progress_stopped(&state->progress, worker))
     return;
   slab s = {.state = state, .begin = (int64_t)task << state->slabs.shift};
   s.end = vxm_min(s.begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
@@ -338,7 +338,7 @@ static void do_slab(size_t task, int worker, void *payload) {
       break;
     do_part(&s, reader, part);
   }
-  vxm_task_progress_step(&state->watch);
+  vxm_task_progress_step(&state->progress);
 }
 
 /* ---- All of it ---- */
@@ -389,7 +389,7 @@ static void unite_straight(unite_state *state) {
   const vxm_window *window = state->window;
   size_t count = (size_t)(window->end - window->begin) * window->slice_words;
   memset(window->words, 0, count * sizeof *window->words);
-  vxm_raster_schedule_flip(&state->workspace->crossings, window->words, &state->watch);
+  vxm_raster_schedule_flip(&state->workspace->crossings, window->words, &state->progress);
   slab s = {.state = state};
   extent all = {.first = 0, .last = count - 1};
   if (state->along == ALONG_ROWS ? fold_rows(&s, window->words, all)
@@ -417,28 +417,28 @@ vxm_status vxm_parity_union(vxm_workspace *workspace, const vxm_window *window,
   if (none || depth == 0)
     return VXM_OK;
   size_t workers = (size_t)vxm_context_threads(context);
-  vxm_raster_schedule *crossings = &workspace->crossings;
+  vxm_raster_schedule *schedule = &workspace->crossings;
   vxm_status status =
-      vxm_raster_schedule_plan(crossings, job->triangles, job->placed, &state.columns, 1, error);
+      vxm_raster_schedule_plan(schedule, job->triangles, job->placed, &state.columns, 1, error);
   if (status == VXM_OK && (!state.in_place || state.past))
     status = vxm_workspace_scratch(workspace, workers * (state.slabs.words + state.flipped_words), error);
-  vxm_task_progress_start(&state.watch, context, job->phase,
-                          crossings->range_count + crossings->round_count * state.slabs.count, error);
+  vxm_task_progress_start(&state.progress, context, job->phase,
+                          schedule->range_count + schedule->round_count * state.slabs.count, error);
   if (status == VXM_OK && state.straight) {
     unite_straight(&state);
-    return vxm_task_progress_end(&state.watch);
+    return vxm_task_progress_end(&state.progress);
   }
-  for (size_t round = 0; round < crossings->round_count && status == VXM_OK; round++) {
+  for (size_t round = 0; round < schedule->round_count && status == VXM_OK; round++) {
     status =
         vxm_crossing_bins_reset(&workspace->bins, workers, 1, state.slabs.count, state.slabs.words, error);
     if (status != VXM_OK)
       break;
-    vxm_raster_schedule_run(crossings, round, &workspace->bins, &state.watch);
+    vxm_raster_schedule_run(schedule, round, &workspace->bins, &state.progress);
     status = vxm_crossing_bins_check(&workspace->bins, error);
-    if (status != VXM_OK || state.watch.status != VXM_OK)
+    if (status != VXM_OK || state.progress.status != VXM_OK)
       break;
     vxm_parallel(context, state.slabs.count, do_slab, &state);
     state.clear = false;
   }
-  return status == VXM_OK ? vxm_task_progress_end(&state.watch) : status;
+  return status == VXM_OK ? vxm_task_progress_end(&state.progress) : status;
 }

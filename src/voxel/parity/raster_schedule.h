@@ -31,7 +31,7 @@ typedef struct vxm_raster_schedule {
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *crossings, const vxm_triangle_set *triangles,
+vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *schedule, const vxm_triangle_set *triangles,
                                     const vxm_snapped_points *placed, const vxm_columns *columns,
                                     size_t columns_count, vxm_error *error);
 /** Crossings after which a round ends with the present part: a share of the memory that is left. */
@@ -44,14 +44,14 @@ double vxm_raster_schedule_bound(const vxm_edge_lengths lengths[VXM_LENGTHS_SETS
                                  const vxm_space *space, const double transform[12]);
 /** The same of triangles as they lie in their space. */
 double vxm_raster_schedule_placed_bound(const vxm_snapped_points *placed, unsigned roles);
-void vxm_raster_schedule_destroy(vxm_raster_schedule *crossings);
+void vxm_raster_schedule_destroy(vxm_raster_schedule *schedule);
 
 /** Puts the crossings of a round into the bins, which are empty and have a worker for each thread. */
-void vxm_raster_schedule_run(const vxm_raster_schedule *crossings, size_t round, vxm_crossing_bins *bins,
-                             vxm_task_progress *watch);
+void vxm_raster_schedule_run(const vxm_raster_schedule *schedule, size_t round, vxm_crossing_bins *bins,
+                             vxm_task_progress *progress);
 /** Flips the words of a window at each crossing of one part, in a context of one thread (see
  * vxm_raster_task). */
-void vxm_raster_schedule_flip(const vxm_raster_schedule *crossings, uint64_t *words,
-                              vxm_task_progress *watch);
+void vxm_raster_schedule_flip(const vxm_raster_schedule *schedule, uint64_t *words,
+                              vxm_task_progress *progress);
 
 #endif

@@ -89,7 +89,7 @@ typedef struct tetra_state {
   const vxm_window *window;
   const vxm_parity_union_job *job;
   vxm_slabs slabs;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } tetra_state;
 
 /** Voxels first..end-1 whose centres may lie between the corners along an axis. */
@@ -152,7 +152,7 @@ static void do_slab(size_t task, int worker, void *payload) {
   tetra_state *state = payload;
   const vxm_window *window = state->window;
   const vxm_triangle_set *triangles = state->job->triangles;
-  if (vxm_task_progress_stopped(&state->watch, worker))
+  if (vxm_task_progress_stopped(&state->progress, worker))
     return;
   int64_t first = (int64_t)task << state->slabs.shift;
   int64_t begin = window->begin + first,
@@ -167,7 +167,7 @@ static void do_slab(size_t task, int worker, void *payload) {
     for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++) {
       bool reaches = draw_tetrahedron(state, f, begin, end, work);
       drawn |= reaches;
-      if ((reaches || f % ASK_TRIANGLES == 0) && vxm_task_progress_stopped(&state->watch, worker)) {
+      if ((reaches || f % ASK_TRIANGLES == 0) && vxm_task_progress_stopped(&state->progress, worker)) {
         memset(work, 0, count * sizeof *work); /* as whoever comes next expects it */
         return;
       }
@@ -175,7 +175,7 @@ static void do_slab(size_t task, int worker, void *payload) {
     if (drawn && vxm_kernels_get()->move_or(out, work, count) && state->job->has_voxels)
       atomic_store_explicit(&state->job->has_voxels[p], 1, memory_order_relaxed);
   }
-  vxm_task_progress_step(&state->watch);
+  vxm_task_progress_step(&state->progress);
 }
 
 vxm_status vxm_tetra_unite(vxm_workspace *workspace, const vxm_window *window,
@@ -186,7 +186,7 @@ vxm_status vxm_tetra_unite(vxm_workspace *workspace, const vxm_window *window,
   vxm_status status = vxm_workspace_scratch(workspace, (size_t)threads * state.slabs.words, error);
   if (status != VXM_OK)
     return status;
-  vxm_task_progress_start(&state.watch, workspace->context, job->phase, state.slabs.count, error);
+  vxm_task_progress_start(&state.progress, workspace->context, job->phase, state.slabs.count, error);
   vxm_parallel(workspace->context, state.slabs.count, do_slab, &state);
-  return vxm_task_progress_end(&state.watch);
+  return vxm_task_progress_end(&state.progress);
 }

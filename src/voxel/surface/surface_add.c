@@ -23,7 +23,7 @@ typedef struct direct_job {
   uint64_t *copies;    /**< their windows */
   bool is_fresh;
   size_t tasks;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } direct_job;
 
 static size_t rows_words(const vxm_window *window) {
@@ -32,7 +32,7 @@ static size_t rows_words(const vxm_window *window) {
 
 static void draw_task(size_t task, int worker, void *payload) {
   direct_job *job = payload;
-  if (vxm_task_progress_stopped(&job->watch, worker))
+  if (vxm_task_progress_stopped(&job->progress, worker))
     return;
   vxm_surface_pen pen = job->pen;
   size_t count = pen.surface->triangle_count;
@@ -44,8 +44,8 @@ static void draw_task(size_t task, int worker, void *payload) {
     pen.slice_words = rows_words(pen.window);
   }
   vxm_surface_draw_some(&pen, NULL, vxm_slice_begin(count, job->tasks, task),
-                        vxm_slice_begin(count, job->tasks, task + 1), &job->watch, worker);
-  vxm_task_progress_step(&job->watch);
+                        vxm_slice_begin(count, job->tasks, task + 1), &job->progress, worker);
+  vxm_task_progress_step(&job->progress);
 }
 
 /** Clears a slice of all windows. */
@@ -72,16 +72,16 @@ static void join_task(size_t slice, int worker, void *payload) {
 }
 
 static vxm_status draw_all(direct_job *job) {
-  vxm_context *context = job->watch.context;
+  vxm_context *context = job->progress.context;
   size_t slices = (size_t)(job->pen.window->end - job->pen.window->begin);
   if (job->copies)
     vxm_parallel(context, slices, clear_task, job);
   for (size_t s = 0; s < slices && !job->copies; s++)
     clear_task(s, 0, job); /* into the cache of the thread that draws */
   vxm_parallel(context, job->tasks, draw_task, job);
-  if (job->watch.status == VXM_OK && job->copies)
+  if (job->progress.status == VXM_OK && job->copies)
     vxm_parallel(context, slices, join_task, job);
-  return job->watch.status == VXM_OK ? vxm_task_progress_end(&job->watch) : job->watch.status;
+  return job->progress.status == VXM_OK ? vxm_task_progress_end(&job->progress) : job->progress.status;
 }
 
 static vxm_status add_directly(const vxm_surface_pen *pen, bool is_fresh, vxm_error *error) {
@@ -97,7 +97,7 @@ static vxm_status add_directly(const vxm_surface_pen *pen, bool is_fresh, vxm_er
   job.padded = job.rows + (size_t)2 * VXM_SURFACE_LANES;
   job.pen.words = window->words;
   job.pen.slice_words = window->slice_words;
-  vxm_task_progress_start(&job.watch, context, "voxelizing the surface", job.tasks, &local);
+  vxm_task_progress_start(&job.progress, context, "voxelizing the surface", job.tasks, &local);
   job.pen.rows = vxm_alloc(context, workers * job.rows, sizeof *job.pen.rows, &local);
   job.pen.row_begin = vxm_calloc(context, workers * 2 * job.padded, sizeof *job.pen.row_begin, &local);
   job.copy_count = (workers < job.tasks ? workers : job.tasks) - 1;

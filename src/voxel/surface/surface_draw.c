@@ -102,7 +102,7 @@ size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3])
 enum { POLL_ROWS = 1 << 16 };
 
 bool vxm_surface_draw_some(const vxm_surface_pen *pen, const uint32_t *list, size_t begin, size_t end,
-                           vxm_task_progress *watch, int worker) {
+                           vxm_task_progress *progress, int worker) {
   size_t rows = 0;
   for (size_t from = begin, to; from < end; from = to) {
     to = end - from < VXM_SURFACE_AT_ONCE ? end : from + VXM_SURFACE_AT_ONCE;
@@ -118,7 +118,7 @@ bool vxm_surface_draw_some(const vxm_surface_pen *pen, const uint32_t *list, siz
     if (rows < POLL_ROWS)
       continue;
     rows = 0;
-    if (vxm_task_progress_stopped(watch, worker))
+    if (vxm_task_progress_stopped(progress, worker))
       return false;
   }
   return true;

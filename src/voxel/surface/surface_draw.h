@@ -190,7 +190,7 @@ static inline void vxm_surface_corners(const vxm_surface *surface, size_t triang
 
 /** Draws triangles begin..end-1 of a list, or of the surface (NULL); false if the work is to stop. */
 bool vxm_surface_draw_some(const vxm_surface_pen *pen, const uint32_t *list, size_t begin, size_t end,
-                           vxm_task_progress *watch, int worker);
+                           vxm_task_progress *progress, int worker);
 
 /** What bounds the rows of a triangle in a range of slices: a middle + c slow + b >= 0. */
 typedef struct vxm_surface_shadow {

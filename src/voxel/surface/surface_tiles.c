@@ -36,7 +36,7 @@ typedef struct tiling {
   size_t *begin;     /**< for each of these where its list begins; one more for the end */
   uint32_t *list;
   uint32_t *places; /**< for each triangle what the first pass found */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
   vxm_error *error;
 } tiling;
 
@@ -199,7 +199,7 @@ static void sort_chunk(size_t chunk, int worker, void *payload) {
   for (size_t from = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk), to; from < end;
        from = to) {
     to = end - from < VXM_ASK_STEPS ? end : from + VXM_ASK_STEPS;
-    if (vxm_task_progress_stopped(&t->watch, worker))
+    if (vxm_task_progress_stopped(&t->progress, worker))
       return;
     if (!t->list)
       place_some(t, from, to);
@@ -234,7 +234,7 @@ static vxm_status list_tiles(tiling *t) {
     return t->error->code;
   if (total > 0)
     vxm_parallel(context, t->chunks, sort_chunk, t);
-  return t->watch.status;
+  return t->progress.status;
 }
 
 /* ---- Drawing ---- */
@@ -267,10 +267,10 @@ static void enter_window(const tiling *t, vxm_surface_pen *pen) {
 static void draw_tile(size_t task, int worker, void *payload) {
   tiling *t = payload;
   if (t->take && t->begin[task] == t->begin[task + 1]) {
-    vxm_task_progress_step(&t->watch);
+    vxm_task_progress_step(&t->progress);
     return;
   }
-  if (vxm_task_progress_stopped(&t->watch, worker))
+  if (vxm_task_progress_stopped(&t->progress, worker))
     return;
   vxm_surface_pen pen = t->pen;
   pen.tile = tile_box(t, t->first + task);
@@ -282,13 +282,13 @@ static void draw_tile(size_t task, int worker, void *payload) {
     enter_window(t, &pen);
   else
     pen.words += (size_t)worker * t->tile_words;
-  if (!vxm_surface_draw_some(&pen, t->list, t->begin[task], t->begin[task + 1], &t->watch, worker))
+  if (!vxm_surface_draw_some(&pen, t->list, t->begin[task], t->begin[task + 1], &t->progress, worker))
     return;
   if (t->take)
     t->take(&pen, t->list + t->begin[task], t->begin[task + 1] - t->begin[task], worker, t->payload);
   else if (!t->in_place && (t->is_fresh || t->begin[task] < t->begin[task + 1]))
     move_tile(t, &pen);
-  vxm_task_progress_step(&t->watch);
+  vxm_task_progress_step(&t->progress);
 }
 
 /** The tiles of a window, or of a band of its slices. */
@@ -299,15 +299,15 @@ static vxm_status draw_tiles(tiling *t) {
   vxm_free(context, t->list);
   t->list = NULL;
   vxm_parallel(context, t->chunks, sort_chunk, t); /* counts only, while there is no list */
-  if (t->watch.status != VXM_OK)
-    return t->watch.status;
+  if (t->progress.status != VXM_OK)
+    return t->progress.status;
   for (; t->first < t->tile_count; t->first = t->end) {
     vxm_status status = list_tiles(t);
     if (status != VXM_OK)
       return status;
     vxm_parallel(context, t->end - t->first, draw_tile, t);
-    if (t->watch.status != VXM_OK)
-      return t->watch.status;
+    if (t->progress.status != VXM_OK)
+      return t->progress.status;
   }
   return VXM_OK;
 }
@@ -348,12 +348,12 @@ vxm_status vxm_surface_add_tiled(const vxm_surface_pen *pen, bool is_fresh, vxm_
   vxm_error local = VXM_ERROR_INIT;
   tiling t = {.surface = pen->surface, .pen = *pen, .is_fresh = is_fresh, .error = &local};
   choose_tiles(&t);
-  vxm_task_progress_start(&t.watch, pen->surface->context, "voxelizing the surface", t.tile_count, &local);
+  vxm_task_progress_start(&t.progress, pen->surface->context, "voxelizing the surface", t.tile_count, &local);
   vxm_status status = reserve(&t);
   if (status == VXM_OK)
     status = draw_tiles(&t);
   if (status == VXM_OK)
-    status = vxm_task_progress_end(&t.watch);
+    status = vxm_task_progress_end(&t.progress);
   release(&t);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
@@ -373,7 +373,7 @@ vxm_status vxm_surface_take_tiles(const vxm_surface_pen *pen, int bits, vxm_surf
   band.end = vxm_min(slices, all);
   cut_window(&t);
   size_t tiles = (size_t)across * ((size_t)((all - 1) >> bits) + 1);
-  vxm_task_progress_start(&t.watch, pen->surface->context, "voxelizing the surface", tiles, &local);
+  vxm_task_progress_start(&t.progress, pen->surface->context, "voxelizing the surface", tiles, &local);
   vxm_status status = reserve(&t);
   for (int64_t begin = 0; begin < all && status == VXM_OK; begin += slices) {
     band.begin = t.pen.tile.begin[VXM_SLOW] = begin;
@@ -383,7 +383,7 @@ vxm_status vxm_surface_take_tiles(const vxm_surface_pen *pen, int bits, vxm_surf
     status = draw_tiles(&t);
   }
   if (status == VXM_OK)
-    status = vxm_task_progress_end(&t.watch);
+    status = vxm_task_progress_end(&t.progress);
   release(&t);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);

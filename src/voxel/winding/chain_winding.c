@@ -49,7 +49,7 @@ typedef struct fold_state {
   pthread_mutex_t mutex; /**< of `more`, `crossings` and `status` */
   vxm_status status;
   vxm_error error;
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } fold_state;
 
 /** The place of a row's crossings is not known yet; of one that has some it is not known whether they are to
@@ -167,7 +167,7 @@ static void fold_slab(size_t task, int worker, void *payload) {
   fold_state *state = payload;
   vxm_chain_winding *out = state->out;
   const vxm_window *window = &out->window;
-  if (vxm_task_progress_stopped(&state->watch, worker))
+  if (vxm_task_progress_stopped(&state->progress, worker))
     return;
   int64_t begin = state->first + ((int64_t)task << state->slabs.shift);
   int64_t end = vxm_min(begin + (INT64_C(1) << state->slabs.shift), state->first + state->slabs.layers);
@@ -186,7 +186,7 @@ static void fold_slab(size_t task, int worker, void *payload) {
     else
       fold_rows(state, row + r, next - r, enter + r * window->row_words, leave + r * window->row_words);
   }
-  vxm_task_progress_step(&state->watch);
+  vxm_task_progress_step(&state->progress);
 }
 
 /** The bits of rows by counting. */
@@ -286,7 +286,7 @@ vxm_status vxm_chain_winding_steps(size_t *steps, vxm_chain_winding *out, vxm_wo
 }
 
 /** Puts the crossings of one kind into bins. */
-static vxm_status raster(raster_job *job, int kind, size_t slabs, vxm_task_progress *watch,
+static vxm_status raster(raster_job *job, int kind, size_t slabs, vxm_task_progress *progress,
                          vxm_error *error) {
   vxm_crossing_bins *bins = &job->out->bins[kind];
   /* A bin that becomes a bitmap forgets how often: never. */
@@ -297,17 +297,17 @@ static vxm_status raster(raster_job *job, int kind, size_t slabs, vxm_task_progr
   if (status == VXM_OK)
     status = plan(job, kind, error);
   if (status == VXM_OK && job->columns.triangle_begin < job->columns.triangle_end)
-    vxm_raster_schedule_run(&job->workspace->crossings, 0, bins, watch);
+    vxm_raster_schedule_run(&job->workspace->crossings, 0, bins, progress);
   return status == VXM_OK ? vxm_crossing_bins_check(bins, error) : status;
 }
 
 vxm_status vxm_chain_winding_raster(vxm_chain_winding *out, vxm_workspace *workspace,
                                     const vxm_snapped_points *placed, const vxm_columns *columns,
-                                    size_t slabs, vxm_task_progress *watch, vxm_error *error) {
+                                    size_t slabs, vxm_task_progress *progress, vxm_error *error) {
   raster_job job = job_of(out, workspace, placed, columns);
   vxm_status status = VXM_OK;
-  for (int kind = 0; kind < 2 && status == VXM_OK && watch->status == VXM_OK; kind++)
-    status = raster(&job, kind, slabs, watch, error);
+  for (int kind = 0; kind < 2 && status == VXM_OK && progress->status == VXM_OK; kind++)
+    status = raster(&job, kind, slabs, progress, error);
   return status;
 }
 
@@ -319,20 +319,20 @@ static vxm_status fill_part(fold_state *state, vxm_workspace *workspace, const v
   vxm_columns columns = vxm_columns_of(&state->part, state->part.layout.fast);
   columns.slab_shift = state->slabs.shift;
   vxm_status status = vxm_chain_winding_steps(&steps, out, workspace, placed, &columns, error);
-  vxm_task_progress_start(&state->watch, out->context, "counting crossings", steps + state->slabs.count,
+  vxm_task_progress_start(&state->progress, out->context, "counting crossings", steps + state->slabs.count,
                           error);
   if (status == VXM_OK)
-    status =
-        vxm_chain_winding_raster(out, workspace, placed, &columns, state->slabs.count, &state->watch, error);
+    status = vxm_chain_winding_raster(out, workspace, placed, &columns, state->slabs.count, &state->progress,
+                                      error);
   if (status != VXM_OK)
     return status;
-  if (state->watch.status == VXM_OK)
+  if (state->progress.status == VXM_OK)
     vxm_parallel(out->context, state->slabs.count, fold_slab, state);
   if (state->status != VXM_OK) {
     vxm_error_pass(error, &state->error);
     return state->status;
   }
-  return vxm_task_progress_end(&state->watch);
+  return vxm_task_progress_end(&state->progress);
 }
 
 /** Slices whose crossings are held at once: all, unless there are very many. */

@@ -74,7 +74,7 @@ void vxm_chain_winding_destroy(vxm_chain_winding *counted);
  */
 vxm_status vxm_chain_winding_raster(vxm_chain_winding *out, vxm_workspace *workspace,
                                     const vxm_snapped_points *placed, const vxm_columns *columns,
-                                    size_t slabs, vxm_task_progress *watch, vxm_error *error);
+                                    size_t slabs, vxm_task_progress *progress, vxm_error *error);
 /** How many steps that takes. */
 vxm_status vxm_chain_winding_steps(size_t *steps, vxm_chain_winding *out, vxm_workspace *workspace,
                                    const vxm_snapped_points *placed, const vxm_columns *columns,

@@ -20,7 +20,7 @@ typedef struct fill_job {
   size_t task_count, task_capacity;
   vxm_winding_scratch lists;    /**< of all tasks */
   vxm_winding_scratch *scratch; /**< of each worker */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
 } fill_job;
 
 /* ---- The walk ---- */
@@ -49,7 +49,7 @@ static void walk_task(size_t index, int worker, void *payload) {
   fill_job *job = payload;
   vxm_winding_scratch *scratch = &job->scratch[worker];
   const cell_task *task = &job->tasks[index];
-  if (scratch->status != VXM_OK || vxm_task_progress_stopped(&job->watch, worker))
+  if (scratch->status != VXM_OK || vxm_task_progress_stopped(&job->progress, worker))
     return;
   scratch->count = 0;
   for (size_t i = 0; i < task->count; i++)
@@ -57,7 +57,7 @@ static void walk_task(size_t index, int worker, void *payload) {
   if (scratch->status == VXM_OK)
     job->asking.kernels->descend(&job->asking.walk, scratch, task->origin, job->asking.walk.task_level,
                                  task->samples, 0, task->count);
-  vxm_task_progress_step(&job->watch);
+  vxm_task_progress_step(&job->progress);
 }
 
 /** Walks down to the cells that are tasks, then through these in all threads. */
@@ -83,14 +83,14 @@ static vxm_status walk(fill_job *job, int top, vxm_error *error) {
     vxm_error_pass(error, &first->error);
     return first->status;
   }
-  vxm_task_progress_start(&job->watch, context, "computing winding numbers", job->task_count, error);
+  vxm_task_progress_start(&job->progress, context, "computing winding numbers", job->task_count, error);
   vxm_parallel(context, job->task_count, walk_task, job);
   for (size_t w = 0; w < workers; w++)
     if (job->scratch[w].status != VXM_OK) {
       vxm_error_pass(error, &job->scratch[w].error);
       return job->scratch[w].status;
     }
-  return vxm_task_progress_end(&job->watch);
+  return vxm_task_progress_end(&job->progress);
 }
 
 /* ---- What is asked, and what comes of it ---- */

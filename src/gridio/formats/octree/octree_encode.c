@@ -244,7 +244,7 @@ static void make_row(size_t y, int worker, void *payload) {
   unsigned char clear[SIDE * VXM_OCTREE_VALUE_BYTES];
   int64_t at[3] = {0, (int64_t)y * SIDE, e->begin};
   node n = {.row = SIDE * e->value_bytes, .slice = (size_t)SIDE * SIDE * e->value_bytes};
-  if (vxm_task_progress_stopped(&e->watch, worker))
+  if (vxm_task_progress_stopped(&e->progress, worker))
     return;
   if (maker->boxes)
     vxm_node_boxes_begin_row(maker->boxes, worker, at[1]);
@@ -265,7 +265,7 @@ static void make_row(size_t y, int worker, void *payload) {
       return;
   }
   vxm_strip_end(&e->builder, (size_t)worker, y, (size_t)e->begin / SIDE);
-  vxm_task_progress_step(&e->watch);
+  vxm_task_progress_step(&e->progress);
 }
 
 static vxm_status make_room(vxm_octree_encoder *e, vxm_error *error) {
@@ -292,7 +292,7 @@ vxm_status vxm_octree_encoder_make(vxm_octree_encoder *e, const vxm_node_maker *
   e->maker = maker;
   if (status != VXM_OK)
     return status;
-  vxm_task_progress_start(&e->watch, e->context, maker->phase, e->builder.across * e->builder.deep, error);
+  vxm_task_progress_start(&e->progress, e->context, maker->phase, e->builder.across * e->builder.deep, error);
   for (e->begin = 0; e->begin < e->space.dims[2] && status == VXM_OK; e->begin = e->end) {
     e->end = vxm_min(e->begin + SIDE, e->space.dims[2]);
     if (maker->boxes)
@@ -300,9 +300,9 @@ vxm_status vxm_octree_encoder_make(vxm_octree_encoder *e, const vxm_node_maker *
     if (e->begin == 0)
       make_first(e);
     vxm_parallel(e->context, e->builder.across, make_row, e);
-    status = e->watch.status == VXM_OK ? vxm_octree_encoder_check(e, error) : e->watch.status;
+    status = e->progress.status == VXM_OK ? vxm_octree_encoder_check(e, error) : e->progress.status;
   }
-  return status == VXM_OK ? vxm_task_progress_end(&e->watch) : status;
+  return status == VXM_OK ? vxm_task_progress_end(&e->progress) : status;
 }
 
 /* ---- All of it ---- */

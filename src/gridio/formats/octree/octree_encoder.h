@@ -47,7 +47,7 @@ struct vxm_octree_encoder {
   const vxm_node_maker *maker; /**< of nodes, whose layer at hand is begin..end-1, too */
   unsigned char *first;        /**< values of the first node */
   bool is_first_one;           /**< they are one value */
-  vxm_task_progress watch;
+  vxm_task_progress progress;
   const vxm_node_entry *next; /**< in the end */
   const vxm_sparse *tree;     /**< in the end */
   vxm_value_bytes out;        /**< in the end, of a block */
