@@ -195,8 +195,8 @@ typedef struct batch_job {
   const vxm_variant *variants;
   /* into memory */
   unsigned char *out;
-  size_t step; /**< bytes of a variant */
-  bool past;   /**< all of them together do not stay in the cache */
+  size_t step;    /**< bytes of a variant */
+  bool streaming; /**< all of them together do not stay in the cache */
   vxm_voxel_format voxels;
   /* or into files, if there are paths */
   const char *const *paths;
@@ -217,7 +217,7 @@ static vxm_status make_one(const batch_job *job, size_t v, vxm_worker *worker, v
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, &job->variants[v]);
   int64_t resolution = sampler->rules.options.resolution;
-  worker->past = job->past;
+  worker->streaming = job->streaming;
   if (!job->paths)
     return vxm_worker_write(worker, job->out + v * job->step, job->voxels, resolution,
                             sampler->rules.options.coverage, subject, &placement, &sampler->noise, error);
@@ -339,7 +339,7 @@ vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant 
                    .variants = variants,
                    .out = out,
                    .step = step,
-                   .past = count > large / step,
+                   .streaming = count > large / step,
                    .voxels = voxels};
   return make_all(&job, count, error);
 }

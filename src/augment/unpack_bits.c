@@ -55,16 +55,16 @@ static void stream_words(float *out, const uint64_t *row, size_t words, const ei
 #endif
 
 static void spread_floats(float *out, const uint64_t *row, size_t dim, const eight_floats table[256],
-                          bool past) {
+                          bool streaming) {
 #if defined(__SSE2__)
-  if (past && (uintptr_t)out % 16 == 0) {
+  if (streaming && (uintptr_t)out % 16 == 0) {
     stream_words(out, row, dim / 64, table);
     out += dim / 64 * 64;
     row += dim / 64;
     dim %= 64;
   }
 #else
-  (void)past;
+  (void)streaming;
 #endif
   for (; dim >= 64; dim -= 64, out += 64, row++)
     if (*row == 0) /* most are; compilers make a slow instruction of a memset of this length */
@@ -81,7 +81,7 @@ static void spread_floats(float *out, const uint64_t *row, size_t dim, const eig
 }
 
 void vxm_unpack_row(void *out, vxm_voxel_format voxels, const uint64_t *words, size_t rows, int64_t dim,
-                    bool past) {
+                    bool streaming) {
   size_t n = (size_t)dim, step = vxm_unpack_row_bytes(voxels, dim), row_words = (n + 63) / 64;
   unsigned char *to = out;
   eight_floats table[256];
@@ -93,7 +93,7 @@ void vxm_unpack_row(void *out, vxm_voxel_format voxels, const uint64_t *words, s
     else if (voxels == VXM_VOXEL_FORMAT_UINT8)
       spread_bytes(to, words, n);
     else
-      spread_floats((float *)(void *)to, words, n, (const eight_floats *)table, past);
+      spread_floats((float *)(void *)to, words, n, (const eight_floats *)table, streaming);
 #if defined(__SSE2__)
   _mm_sfence(); /* before another thread is told that they are there */
 #endif

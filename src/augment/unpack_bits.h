@@ -15,6 +15,6 @@ size_t vxm_unpack_row_bytes(vxm_voxel_format voxels, int64_t dim);
  * @param past  floats go past the cache, as they are so many that they would not stay in it
  */
 void vxm_unpack_row(void *out, vxm_voxel_format voxels, const uint64_t *words, size_t rows, int64_t dim,
-                    bool past);
+                    bool streaming);
 
 #endif

@@ -137,7 +137,7 @@ vxm_status vxm_worker_write(vxm_worker *worker, void *out, vxm_voxel_format voxe
   vxm_status status = vxm_worker_fill(worker, &window, subject, placement, noise, error);
   if (status == VXM_OK && !direct)
     vxm_unpack_row(out, voxels, window.words, (size_t)resolution * (size_t)resolution, resolution,
-                   worker->past);
+                   worker->streaming);
   return status;
 }
 

@@ -10,7 +10,7 @@ typedef struct vxm_worker {
   vxm_model_instance instance;
   vxm_engine *engine; /**< in place of the model's; NULL = that one */
   vxm_grid *grid;     /**< a variant on its way to a file; NULL before the first */
-  bool past;          /**< what is written goes past the cache: there is so much that it would not stay */
+  bool streaming;     /**< what is written goes past the cache: there is so much that it would not stay */
   bool write_failed;  /**< the last variant was made, and its file could not be written */
   uint64_t *words;    /**< of a window, where what is asked for has another form */
   size_t word_room;

@@ -82,7 +82,7 @@ static void check_values(const outcome *got, const vxm_coverage_values *values, 
 }
 
 /** All rows, `some` at a time, as parts of which each is united with those before it. */
-static void check_rows(vxm_rng *rng, int n, vxm_scalar scalar, bool past) {
+static void check_rows(vxm_rng *rng, int n, vxm_scalar scalar, bool streaming) {
   vxm_coverage_flips shape = vxm_coverage_flips_of(n, 1 + (size_t)vxm_rng_below(rng, n == 8 ? 80 : 300));
   size_t rows = 1 + (size_t)vxm_rng_below(rng, 5), some = 1 + (size_t)vxm_rng_below(rng, rows), count[PARTS];
   size_t number = vxm_scalar_bytes(scalar), size = rows * shape.row_length * number;
@@ -99,7 +99,7 @@ static void check_rows(vxm_rng *rng, int n, vxm_scalar scalar, bool past) {
   memset(got.bytes, 0xa5, before + size + GUARD);
   vxm_coverage_values values = vxm_coverage_values_of(n, scalar);
   values.out = got.bytes + before;
-  values.past = past;
+  values.streaming = streaming;
   vxm_coverage_flips all = shape, part = shape;
   assert_int_equal(vxm_coverage_flips_make(&all, context, some, NULL), VXM_OK);
   assert_int_equal(vxm_coverage_flips_make(&part, context, some, NULL), VXM_OK);

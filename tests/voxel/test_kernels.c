@@ -119,7 +119,7 @@ static void test_many_and_long_rows_are_folded(void **state) {
 
 /** Rows folded past the cache, to any place in a line, are those folded in place; nothing is left behind, and
  * nothing written around. */
-static void check_fold_past(vxm_rng *rng, size_t row_words, size_t rows) {
+static void check_fold_streaming(vxm_rng *rng, size_t row_words, size_t rows) {
   enum { AROUND = 8 };
   const uint64_t other = UINT64_C(0xa5a5a5a5a5a5a5a5);
   size_t count = row_words * rows, shift = (size_t)vxm_rng_below(rng, AROUND);
@@ -136,7 +136,7 @@ static void check_fold_past(vxm_rng *rng, size_t row_words, size_t rows) {
     assert_non_null(room);
     for (size_t i = 0; i < count + 2 * AROUND; i++)
       room[i] = other;
-    uint64_t any = builds[b]->fold_rows_past(to, from, row_words, rows, tail_mask);
+    uint64_t any = builds[b]->fold_rows_streaming(to, from, row_words, rows, tail_mask);
     uint64_t in_place = builds[b]->fold_rows(want, row_words, rows, tail_mask);
     assert_true((any != 0) == (in_place != 0));
     assert_words(to, want, count);
@@ -158,12 +158,12 @@ static void test_rows_are_folded_past_the_cache(void **state) {
   vxm_rng rng = {14};
   for (size_t row_words = 1; row_words <= 40; row_words++)
     for (int round = 0; round < 20; round++)
-      check_fold_past(&rng, row_words, 5);
+      check_fold_streaming(&rng, row_words, 5);
   const size_t shapes[][2] = {{2, 300}, {4, 150}, {7, 99},  {8, 99}, {16, 40},
                               {255, 3}, {256, 3}, {257, 3}, {264, 2}};
   for (size_t s = 0; s < sizeof shapes / sizeof *shapes; s++)
     for (int round = 0; round < 20; round++)
-      check_fold_past(&rng, shapes[s][0], shapes[s][1]);
+      check_fold_streaming(&rng, shapes[s][0], shapes[s][1]);
 }
 
 static void test_rows_are_folded_onto_rows(void **state) {
@@ -259,7 +259,7 @@ static void test_words_are_moved(void **state) {
 
 static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, bool masked) {
   uint64_t data[5][WORDS_MAX];
-  bool fresh = vxm_rng_below(rng, 2), past = vxm_rng_below(rng, 2);
+  bool fresh = vxm_rng_below(rng, 2), streaming = vxm_rng_below(rng, 2);
   size_t at = (size_t)vxm_rng_below(rng, 8); /* in a line */
   for (int v = 0; v < 5; v++)
     random_words(rng, data[v], count);
@@ -271,8 +271,8 @@ static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, b
       voter[v] = copy_of(data[v], count);
     const uint64_t *const voters[4] = {voter[0], voter[1], voter[2], fourth ? voter[3] : NULL};
     uint64_t added = 0, want_added = 0;
-    int64_t contested =
-                builds[b]->vote(out, voters, NULL, masked ? mask : NULL, count, rule, fresh, past, &added),
+    int64_t contested = builds[b]->vote(out, voters, NULL, masked ? mask : NULL, count, rule, fresh,
+                                        streaming, &added),
             want = 0;
     for (size_t i = 0; i < count; i++) {
       uint64_t x = data[0][i], y = data[1][i], z = data[2][i], t = fourth ? data[3][i] : x;

@@ -80,8 +80,8 @@ typedef struct vxm_band_values {
   size_t row, slice;
   const uint64_t *words; /**< of the solid: that of the first voxel; NULL = no signs */
   size_t row_words, slice_words;
-  int shift;    /**< the first voxel's bit */
-  bool is_past; /**< so many that what is beyond the band is written past the cache */
+  int shift;         /**< the first voxel's bit */
+  bool is_streaming; /**< so many that what is beyond the band is written past the cache */
   double band, side;
 } vxm_band_values;
 

@@ -138,11 +138,11 @@ INLINE lanes lanes_root(lanes x) {
 }
 
 /** Stores half a vector of floats past the cache. */
-INLINE void store_past(float *to, narrow x) {
+INLINE void store_streaming(float *to, narrow x) {
   _mm256_stream_ps(to, (__m256)x);
 }
 
-INLINE void end_past(void) {
+INLINE void end_streaming(void) {
   _mm_sfence();
 }
 

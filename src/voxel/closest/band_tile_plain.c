@@ -234,11 +234,11 @@ INLINE lanes lanes_root(lanes x) {
 }
 
 /** Not all processors can store past the cache. */
-INLINE void store_past(float *to, narrow x) {
+INLINE void store_streaming(float *to, narrow x) {
   memcpy(to, &x, sizeof x);
 }
 
-INLINE void end_past(void) {
+INLINE void end_streaming(void) {
 }
 
 #include "voxel/closest/band_tile_body.inc"

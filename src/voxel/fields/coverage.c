@@ -179,7 +179,7 @@ static vxm_status reduce_window(reduction *r, vxm_window *fine, const vxm_field_
 }
 
 /** From so many bytes of values on they are stored past the cache. */
-static const double past_bytes = 1 << 25;
+static const double streaming_bytes = 1 << 25;
 
 static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, vxm_window *fine,
                                  const vxm_field_plan *plan, vxm_model_pass *pass, vxm_error *error) {
@@ -188,7 +188,7 @@ static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, v
   size_t slice_bytes = (size_t)(r->row_length * r->rows) * vxm_scalar_bytes(r->values.scalar);
   unsigned char *block = r->values.out;
   bool by_parity = vxm_coverage_by_parity(pass);
-  r->values.past = target->whole && (double)slice_bytes * (double)length >= past_bytes;
+  r->values.streaming = target->whole && (double)slice_bytes * (double)length >= streaming_bytes;
   if (by_parity && target->whole)
     slices = slices_by_parity(plan, pass, length);
   r->fine = fine;

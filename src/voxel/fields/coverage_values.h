@@ -22,7 +22,7 @@ typedef struct vxm_coverage_values {
   float fractions[VXM_COVERAGE_CHOICES]; /**< by the number of sub-voxels that are set */
   uint8_t bytes[VXM_COVERAGE_CHOICES];
   unsigned char *out; /**< of the slices at hand */
-  bool past;          /**< they are stored past the cache, in which they would not stay */
+  bool streaming;     /**< they are stored past the cache, in which they would not stay */
 } vxm_coverage_values;
 
 /** The tables for n sub-voxels along an axis. */

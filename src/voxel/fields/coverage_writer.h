@@ -24,7 +24,7 @@ typedef struct vxm_coverage_writer {
   size_t number;      /**< bytes of one */
   unsigned char *to;  /**< where the line at hand goes */
   size_t used, begin; /**< bytes of that line which are there, from `begin` on */
-  bool past;
+  bool streaming;
   _Alignas(64) unsigned char line[2 * VXM_WRITER_LINE]; /**< at hand, and room for what is written over it */
 } vxm_coverage_writer;
 
@@ -36,7 +36,7 @@ static inline void vxm_coverage_writer_begin(vxm_coverage_writer *w, const vxm_c
   w->values = values;
   w->tally = tally;
   w->number = vxm_scalar_bytes(values->scalar);
-  w->past = values->past;
+  w->streaming = values->streaming;
   unsigned char *first = values->out + at * w->number;
   w->begin = w->used = (uintptr_t)first % VXM_WRITER_LINE;
   w->to = first - w->begin;
@@ -45,7 +45,7 @@ static inline void vxm_coverage_writer_begin(vxm_coverage_writer *w, const vxm_c
 static inline void vxm_writer_store(const vxm_coverage_writer *w, const vxm_writer_four four[4]) {
   vxm_writer_four *to = (vxm_writer_four *)(void *)w->to;
 #if defined(__SSE2__)
-  if (w->past) {
+  if (w->streaming) {
     VXM_UNROLL(4)
     for (int i = 0; i < 4; i++)
       _mm_stream_ps((float *)(to + i), (__m128)four[i]);
@@ -97,7 +97,7 @@ static inline void vxm_coverage_put(vxm_coverage_writer *w, size_t some, unsigne
 static inline void vxm_coverage_writer_end(vxm_coverage_writer *w) {
   memcpy(w->to + w->begin, w->line + w->begin, w->used - w->begin);
 #if defined(__SSE2__)
-  if (w->past)
+  if (w->streaming)
     _mm_sfence();
 #endif
 }

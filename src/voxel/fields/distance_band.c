@@ -10,7 +10,7 @@
 /* The tiles of a grid that lie side by side along rows are a bin. */
 
 /** From so many values on what is beyond the band is written past the cache: it would not stay there. */
-static const int64_t past_values = INT64_C(1) << 24;
+static const int64_t streaming_values = INT64_C(1) << 24;
 
 enum { TASKS = 8 /**< for each worker, if there are tiles enough */ };
 
@@ -247,15 +247,16 @@ vxm_status vxm_distance_band_measure(vxm_distance_band *band, const vxm_field_ta
   band->begin = begin;
   band->end = end;
   band->tallies = tallies;
-  band->out = (vxm_band_values){.values = values,
-                                .row = (size_t)dims[0],
-                                .slice = (size_t)(dims[0] * dims[1]),
-                                .words = solid->words,
-                                .row_words = solid->row_words,
-                                .slice_words = solid->slice_words,
-                                .is_past = values && dims[0] * dims[1] * (end - begin) >= past_values,
-                                .band = band->clusters->grid.band,
-                                .side = side};
+  band->out =
+      (vxm_band_values){.values = values,
+                        .row = (size_t)dims[0],
+                        .slice = (size_t)(dims[0] * dims[1]),
+                        .words = solid->words,
+                        .row_words = solid->row_words,
+                        .slice_words = solid->slice_words,
+                        .is_streaming = values && dims[0] * dims[1] * (end - begin) >= streaming_values,
+                        .band = band->clusters->grid.band,
+                        .side = side};
   vxm_status status = target ? make_tiles(band, target, error) : VXM_OK;
   if (status == VXM_OK)
     status = measure_bins(band, error);

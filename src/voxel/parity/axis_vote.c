@@ -22,7 +22,7 @@ typedef struct vote_state {
   vxm_slabs slabs;
   size_t stripes;
   size_t words_each; /**< scratch of a worker: a slab for each set, and a slice */
-  bool past;         /**< the window is larger than caches */
+  bool streaming;    /**< the window is larger than caches */
   vxm_odd_lines odd; /**< for VXM_VOTE_AUTO */
   uint64_t *carries; /**< a slice for each stripe, and one for the end */
   atomic_int_fast64_t contested;
@@ -149,7 +149,7 @@ static int64_t count_votes(const vote_state *state, const slab *s, const uint64_
   const uint64_t *const some[4] = {voters[0] + at, voters[1] + at, voters[2] + at, voters[3] + at};
   return state->kernels->vote(state->window->words + in_window, some, odd,
                               job->mask ? job->mask + in_window : NULL, count, job->rule, job->fresh,
-                              state->past && !odd, added);
+                              state->streaming && !odd, added);
 }
 
 /** The same on all of a slab, slice by slice where axes abstain. */
@@ -232,7 +232,7 @@ static void shape(vote_state *state) {
   state->slabs = vxm_slabs_of(window->end - window->begin, window->slice_words, threads);
   state->stripes = (size_t)threads < state->slabs.count ? (size_t)threads : state->slabs.count;
   state->words_each = SETS * state->slabs.words + window->slice_words;
-  state->past = job->fresh && vxm_window_is_large(window);
+  state->streaming = job->fresh && vxm_window_is_large(window);
   for (size_t set = BASE; set <= CONES; set++) {
     vxm_columns *columns = &state->columns[set];
     *columns = vxm_columns_of(window, window->layout.fast);

@@ -46,18 +46,18 @@ typedef struct vxm_kernels {
    * 0 if no bit is set. */
   uint64_t (*fold_rows)(uint64_t *words, size_t row_words, size_t rows, uint64_t tail_mask);
   /** The same with the result stored past the cache to `to`, and `words` cleared. */
-  uint64_t (*fold_rows_past)(uint64_t *to, uint64_t *words, size_t row_words, size_t rows,
-                             uint64_t tail_mask);
+  uint64_t (*fold_rows_streaming)(uint64_t *to, uint64_t *words, size_t row_words, size_t rows,
+                                  uint64_t tail_mask);
   /** words[i] ^= words[i - distance] for i = distance to count - 1: prefix XOR of row onto row. */
   void (*fold_across)(uint64_t *words, size_t distance, size_t count);
   /** to |= from, from = 0; returns the OR of all words of `from`. */
   uint64_t (*move_or)(uint64_t *to, uint64_t *from, size_t count);
   /** vxm_vote_count for some words, of which `out` holds nothing yet if it is `fresh`; returns the contested
    * voxels, and ors into *added the bits newly set. `odd` is NULL, or says where each axis abstains, as in
-   * vxm_odd_lines_abstain; then there is no fourth voter. With `past` they are stored past the cache where
-   * lines are whole. */
+   * vxm_odd_lines_abstain; then there is no fourth voter. With `streaming` they are stored past the cache
+   * where lines are whole. */
   int64_t (*vote)(uint64_t *out, const uint64_t *const voters[4], const uint64_t *const odd[3],
-                  uint64_t *mask, size_t count, vxm_vote rule, bool fresh, bool past, uint64_t *added);
+                  uint64_t *mask, size_t count, vxm_vote rule, bool fresh, bool streaming, uint64_t *added);
   /** vxm_odd_lines_abstain for some words. */
   void (*abstain)(uint64_t *const voters[3], const uint64_t *const odd[3], size_t count);
   /** The bricks of a node of an octree, in the order of vxm_strip_add_node, of what is flipped in it, which

@@ -20,10 +20,10 @@ typedef struct unite_state {
   vxm_columns columns;
   vxm_slabs slabs;
   direction along;
-  bool in_place; /**< there is but one part: its flips go straight to the window's words */
-  bool past;     /**< in place, but by way of the work words and past the cache */
-  bool straight; /**< in place, and triangles flip the window's words themselves: no bins */
-  bool clear;    /**< the slabs are still to be cleared */
+  bool in_place;  /**< there is but one part: its flips go straight to the window's words */
+  bool streaming; /**< in place, but by way of the work words and past the cache */
+  bool straight;  /**< in place, and triangles flip the window's words themselves: no bins */
+  bool clear;     /**< the slabs are still to be cleared */
   size_t row_bits;
   uint64_t by_row_words; /**< 2^40 / words of a row, rounded up; 0 where that is not good enough to divide */
   size_t flipped_words;  /**< of slab.flipped */
@@ -260,14 +260,14 @@ static void do_in_place(const slab *s, vxm_crossing_bin_reader *reader, uint32_t
   const unite_state *state = s->state;
   extent flipped = nothing;
   vxm_crossing_bin_piece piece;
-  uint64_t *words = state->past ? s->work : s->out;
+  uint64_t *words = state->streaming ? s->work : s->out;
   for (size_t w = 0; w < state->workspace->bins.workers; w++)
     while (reader[w].part == part && vxm_crossing_bin_next(&reader[w], &piece))
       flip_piece(s, words, &piece, &flipped);
-  if (state->past) {
+  if (state->streaming) {
     size_t rows = (size_t)(s->end - s->begin) * (size_t)state->window->middle_dim;
-    if (state->kernels->fold_rows_past(s->out, s->work, state->window->row_words, rows,
-                                       vxm_window_tail_mask(state->window)))
+    if (state->kernels->fold_rows_streaming(s->out, s->work, state->window->row_words, rows,
+                                            vxm_window_tail_mask(state->window)))
       touch(state, part);
     return;
   }
@@ -318,12 +318,12 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   slab s = {.state = state, .begin = (int64_t)task << state->slabs.shift};
   s.end = vxm_min(s.begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
-  if (!state->in_place || state->past)
+  if (!state->in_place || state->streaming)
     s.work = state->workspace->scratch + (size_t)worker * (state->slabs.words + state->flipped_words);
   s.flipped = s.work ? s.work + state->slabs.words : NULL;
   if (state->along != ACROSS_SLICES) {
     s.out = window->words + (size_t)s.begin * window->slice_words;
-    if (state->clear && !state->past)
+    if (state->clear && !state->streaming)
       memset(s.out, 0, (size_t)(s.end - s.begin) * window->slice_words * sizeof *s.out);
   }
   for (size_t w = 0; w < bins->workers; w++)
@@ -377,7 +377,7 @@ static void shape(unite_state *state) {
   if (slices)
     columns->step[layout->slow] = state->row_bits << state->slabs.shift;
   state->in_place = !slices && job->fresh && job->part_end - job->part_begin == 1;
-  state->past = state->in_place && state->along == ALONG_ROWS && vxm_window_is_large(window);
+  state->streaming = state->in_place && state->along == ALONG_ROWS && vxm_window_is_large(window);
   state->straight = state->in_place && vxm_context_threads(state->workspace->context) == 1 &&
                     (size_t)depth * window->slice_words <= STRAIGHT_WORDS;
   if (state->straight)
@@ -420,7 +420,7 @@ vxm_status vxm_parity_union(vxm_workspace *workspace, const vxm_window *window,
   vxm_raster_schedule *schedule = &workspace->crossings;
   vxm_status status =
       vxm_raster_schedule_plan(schedule, job->triangles, job->placed, &state.columns, 1, error);
-  if (status == VXM_OK && (!state.in_place || state.past))
+  if (status == VXM_OK && (!state.in_place || state.streaming))
     status = vxm_workspace_scratch(workspace, workers * (state.slabs.words + state.flipped_words), error);
   vxm_task_progress_start(&state.progress, context, job->phase,
                           schedule->range_count + schedule->round_count * state.slabs.count, error);
