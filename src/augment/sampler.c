@@ -134,7 +134,7 @@ vxm_status vxm_sampler_set(vxm_sampler *sampler, uint32_t model, const vxm_soup 
   if (!soup)
     return VXM_OK;
   vxm_sampler_model made;
-  vxm_status status = vxm_grow(sampler->context, (void **)&sampler->subjects, &sampler->subject_room,
+  vxm_status status = vxm_grow(sampler->context, (void **)&sampler->subjects, &sampler->subject_capacity,
                                sampler->subject_count + 1, sizeof *sampler->subjects, error);
   if (status == VXM_OK)
     status = vxm_sampler_model_create(&made, model, soup, &sampler->rules.voxelize, &sampler->noise, error);

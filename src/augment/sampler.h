@@ -12,7 +12,7 @@ struct vxm_sampler {
   double *rotations; /**< a copy of the list */
   vxm_noise noise;
   vxm_sampler_model *subjects; /**< in the order of their numbers */
-  size_t subject_count, subject_room;
+  size_t subject_count, subject_capacity;
   vxm_worker *workers;                     /**< one for each thread, and then one for all of them together */
   vxm_worker seats[VXM_MULTI_DEVICE_MOST]; /**< one for each device, where several work at once */
 };

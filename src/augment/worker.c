@@ -93,8 +93,8 @@ vxm_status vxm_worker_fill(vxm_worker *worker, const vxm_window *window, const v
 }
 
 static vxm_status make_room(vxm_worker *worker, size_t words, vxm_error *error) {
-  return vxm_renew(worker->context, (void **)&worker->words, &worker->word_room, words, sizeof *worker->words,
-                   error);
+  return vxm_renew(worker->context, (void **)&worker->words, &worker->word_capacity, words,
+                   sizeof *worker->words, error);
 }
 
 /** Whether packed voxels have the form of a window's words, so that it can be filled where they belong. */

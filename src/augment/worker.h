@@ -13,7 +13,7 @@ typedef struct vxm_worker {
   bool streaming;     /**< what is written goes past the cache: there is so much that it would not stay */
   bool write_failed;  /**< the last variant was made, and its file could not be written */
   uint64_t *words;    /**< of a window, where what is asked for has another form */
-  size_t word_room;
+  size_t word_capacity;
 } vxm_worker;
 
 /** @param alone whether one thread works here while others work elsewhere; else all of the context's do */

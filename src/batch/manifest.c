@@ -40,13 +40,13 @@ static char *readable(const char *name, bool *is_misnamed) {
 }
 
 bool batch_manifest_add(batch_manifest *manifest, const batch_item *item, batch_error *error) {
-  if (manifest->count == manifest->room) {
-    int64_t room = manifest->room ? 2 * manifest->room : 256;
+  if (manifest->count == manifest->capacity) {
+    int64_t room = manifest->capacity ? 2 * manifest->capacity : 256;
     batch_item *grown = realloc(manifest->items, (size_t)room * sizeof *grown);
     if (!grown)
       return batch_fail(error, "out of memory for the list of meshes: free some");
     manifest->items = grown;
-    manifest->room = room;
+    manifest->capacity = room;
   }
   batch_item *added = &manifest->items[manifest->count];
   *added = (batch_item){.bytes = item->bytes, .modified = item->modified, .original = -1};

@@ -31,7 +31,7 @@ typedef struct batch_item {
 
 typedef struct batch_manifest {
   batch_item *items;
-  int64_t count, room;
+  int64_t count, capacity;
   int64_t passed_over; /**< files in folders that are no meshes, by their names */
   char note[256];      /**< names the extensions that were passed over */
   bool has_left_out;   /**< the folder of the output is one of those looked through, or within one */

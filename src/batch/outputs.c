@@ -151,17 +151,17 @@ typedef struct checking {
   const batch_settings *settings;
   known_file *inputs;
   named *names;
-  size_t name_count, name_room;
+  size_t name_count, name_capacity;
 } checking;
 
 static bool note_name(checking *c, const char *name, int64_t item) {
-  if (c->name_count == c->name_room) {
-    size_t room = c->name_room ? 2 * c->name_room : 1024;
+  if (c->name_count == c->name_capacity) {
+    size_t room = c->name_capacity ? 2 * c->name_capacity : 1024;
     named *grown = realloc(c->names, room * sizeof *grown);
     if (!grown)
       return false;
     c->names = grown;
-    c->name_room = room;
+    c->name_capacity = room;
   }
   char digest[BATCH_DIGEST];
   named *n = &c->names[c->name_count++];

@@ -25,7 +25,7 @@ enum { CHILDREN_MAX = 1024, FLOOD_BYTES = 16 << 20, STRAY_MS = 20 };
 typedef struct stream {
   int descriptor; /**< -1 = at its end */
   char *text;
-  size_t size, room; /**< room: what is kept; more is dropped */
+  size_t size, capacity; /**< capacity: what is kept; more is dropped */
   uint64_t dropped;
 } stream;
 
@@ -53,7 +53,7 @@ typedef struct zygote {
 
 static bool open_stream(stream *s, size_t room, int *writer) {
   int ends[2];
-  *s = (stream){.descriptor = -1, .text = malloc(room), .room = room};
+  *s = (stream){.descriptor = -1, .text = malloc(room), .capacity = room};
   if (!s->text || pipe2(ends, O_CLOEXEC) != 0)
     return false;
   s->descriptor = ends[0];
@@ -73,9 +73,9 @@ static void close_stream(stream *s) {
 static void read_stream(stream *s) {
   char scrap[4096];
   for (int i = 0; i < 64 && s->descriptor >= 0; i++) {
-    bool keeps = s->size < s->room;
+    bool keeps = s->size < s->capacity;
     ssize_t got =
-        read(s->descriptor, keeps ? s->text + s->size : scrap, keeps ? s->room - s->size : sizeof scrap);
+        read(s->descriptor, keeps ? s->text + s->size : scrap, keeps ? s->capacity - s->size : sizeof scrap);
     if (got > 0 && keeps)
       s->size += (size_t)got;
     else if (got > 0)

@@ -205,7 +205,7 @@ static vxm_status stamp_box(vxm_carver *carver, const int64_t place[3], const vx
     space.dims[a] = box->last[a] - box->first[a] + 1;
   vxm_window window = vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, 0, space.dims[2]);
   size_t words = window.slice_words * (size_t)space.dims[2];
-  vxm_status status = vxm_renew(carver->context, (void **)&carver->words, &carver->word_room, words,
+  vxm_status status = vxm_renew(carver->context, (void **)&carver->words, &carver->word_capacity, words,
                                 sizeof *carver->words, error);
   if (status != VXM_OK)
     return status;

@@ -25,7 +25,7 @@ struct vxm_carver {
   int64_t piece;      /**< a straight path is cut piece by piece, each at most so many steps long */
   double (*moved)[3]; /**< the points in a window */
   uint64_t *words;    /**< of that window */
-  size_t word_room;
+  size_t word_capacity;
   vxm_turned_points from, to;
   vxm_tool_pose from_pose; /**< whose points `from` has; where the tool is unless it is nowhere */
   vxm_tool_pose pose;

@@ -15,7 +15,7 @@ vxm_stock vxm_stock_of_sparse(vxm_context *context, const vxm_sparse *sparse) {
 }
 
 void vxm_stock_destroy(vxm_stock *stock) {
-  for (size_t t = 0; t < stock->tile_room; t++)
+  for (size_t t = 0; t < stock->tile_capacity; t++)
     vxm_grid_destroy(stock->tiles[t].bits);
   vxm_free(stock->context, stock->tiles);
   *stock = (vxm_stock){0};
@@ -38,7 +38,7 @@ static size_t place_of(const vxm_stock *stock, const int64_t at[3]) {
   uint64_t hash = 0;
   for (int a = 0; a < 3; a++)
     hash = vxm_hash_word(hash, (uint64_t)at[a]);
-  size_t mask = stock->tile_room - 1, place = (size_t)hash & mask;
+  size_t mask = stock->tile_capacity - 1, place = (size_t)hash & mask;
   for (; stock->tiles[place].bits; place = (place + 1) & mask) {
     const int64_t *other = stock->tiles[place].at;
     if (other[0] == at[0] && other[1] == at[1] && other[2] == at[2])
@@ -49,22 +49,22 @@ static size_t place_of(const vxm_stock *stock, const int64_t at[3]) {
 
 /** Makes room for one more tile in a table that is at most half full. */
 static vxm_status grow_table(vxm_stock *stock, vxm_error *error) {
-  if (stock->tile_room > 2 * stock->tile_count)
+  if (stock->tile_capacity > 2 * stock->tile_count)
     return VXM_OK;
   vxm_stock larger = *stock;
   vxm_error local = VXM_ERROR_INIT;
-  larger.tile_room = stock->tile_room ? 2 * stock->tile_room : TABLE_MIN;
-  larger.tiles = vxm_calloc(stock->context, larger.tile_room, sizeof *larger.tiles, &local);
+  larger.tile_capacity = stock->tile_capacity ? 2 * stock->tile_capacity : TABLE_MIN;
+  larger.tiles = vxm_calloc(stock->context, larger.tile_capacity, sizeof *larger.tiles, &local);
   if (!larger.tiles) {
     vxm_error_pass(error, &local);
     return local.code;
   }
-  for (size_t t = 0; t < stock->tile_room; t++)
+  for (size_t t = 0; t < stock->tile_capacity; t++)
     if (stock->tiles[t].bits)
       larger.tiles[place_of(&larger, stock->tiles[t].at)] = stock->tiles[t];
   vxm_free(stock->context, stock->tiles);
   stock->tiles = larger.tiles;
-  stock->tile_room = larger.tile_room;
+  stock->tile_capacity = larger.tile_capacity;
   return VXM_OK;
 }
 
@@ -183,7 +183,7 @@ static void compare_tile(vxm_octree_pieces *lost, const vxm_sparse *before, cons
 
 vxm_status vxm_stock_octree(vxm_sparse **out, const vxm_stock *stock, vxm_error *error) {
   vxm_octree_pieces lost = {.context = stock->context, .space = stock->sparse->space, .error = error};
-  for (size_t t = 0; t < stock->tile_room; t++)
+  for (size_t t = 0; t < stock->tile_capacity; t++)
     if (stock->tiles[t].bits)
       compare_tile(&lost, stock->sparse, &stock->tiles[t]);
   vxm_sparse *gone = NULL;

@@ -20,7 +20,7 @@ typedef struct vxm_stock {
   vxm_grid *grid;
   const vxm_sparse *sparse;
   vxm_stock_tile *tiles; /**< a table with open addressing; its size is a power of two */
-  size_t tile_count, tile_room;
+  size_t tile_count, tile_capacity;
   vxm_stock_tile last; /**< the one that was looked for last */
   /* Since vxm_stock_begin. */
   int64_t removed;

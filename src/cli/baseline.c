@@ -66,7 +66,8 @@ json_t *cli_baseline_figures(const vxm_baseline_report *report) {
   return figures;
 }
 
-json_t *cli_published_figures(const vxm_published_report *report) {
+/** The same of the OpenCL program. */
+static json_t *published_figures(const vxm_published_report *report) {
   json_t *figures = json_object();
   json_object_set_new(figures, "kernel_ms", json_real(report->kernel_ms));
   json_object_set_new(figures, "profiled", json_boolean(report->profiled));
@@ -154,7 +155,7 @@ static vxm_status make_published(vxm_grid **out, cli_run *cli, voxelize_request 
     status = vxm_published_voxelize(&report, published, &cli->error);
   if (status == VXM_OK)
     status = read_voxels(out, cli, published, &results->space);
-  results->figures = cli_published_figures(&report);
+  results->figures = published_figures(&report);
   vxm_published_destroy(published);
   return status;
 }

@@ -15,8 +15,6 @@ int cli_baseline_check(cli_run *cli, const voxelize_request *given);
 int cli_baseline_write(cli_run *cli, voxelize_request *given, voxelize_outcome *results);
 /** What a method counted and timed, without what it does not have. */
 json_t *cli_baseline_figures(const vxm_baseline_report *report);
-/** The same of the OpenCL program. */
-json_t *cli_published_figures(const vxm_published_report *report);
 /** "setup_ms 0.3, parts 4", of figures. */
 void cli_figures_text(char *text, size_t size, const json_t *figures);
 

@@ -20,7 +20,7 @@ typedef enum batch_product {
 /** Words of a command line. */
 typedef struct batch_words {
   char **words;
-  int count, room;
+  int count, capacity;
 } batch_words;
 
 /** Adds a copy; false without memory. */

@@ -7,15 +7,15 @@
 #include <string.h>
 
 static bool add_word(batch_words *words, char *word) {
-  if (word && words->count + 1 >= words->room) {
-    int room = words->room ? 2 * words->room : 16;
-    char **grown = realloc(words->words, (size_t)room * sizeof *grown);
+  if (word && words->count + 1 >= words->capacity) {
+    int capacity = words->capacity ? 2 * words->capacity : 16;
+    char **grown = realloc(words->words, (size_t)capacity * sizeof *grown);
     if (!grown) {
       free(word);
       return false;
     }
     words->words = grown;
-    words->room = room;
+    words->capacity = capacity;
   }
   if (!word)
     return false;

@@ -182,7 +182,7 @@ typedef struct bench_memory {
 
 typedef struct bench_results {
   bench_result *items;
-  int count, room;
+  int count, capacity;
   bench_memory memory[BENCH_LIST_MAX * BENCH_LIST_MAX];
   int memory_count;
 } bench_results;
@@ -191,8 +191,6 @@ void bench_results_drop(bench_results *results);
 /** The result of a phase, or NULL if there is none that was measured. */
 const bench_result *bench_find(const bench_results *results, const char *phase, int64_t resolution,
                                int threads, int engine);
-/** Adds an empty result; NULL without memory. */
-bench_result *bench_add(bench_results *results);
 /**
  * Measures a phase, or decides to leave it out, and adds the result. A phase that does not fit the memory is
  * left out too.

@@ -20,14 +20,15 @@ const bench_result *bench_find(const bench_results *results, const char *phase, 
   return NULL;
 }
 
-bench_result *bench_add(bench_results *results) {
-  if (results->count == results->room) {
-    int room = results->room ? 2 * results->room : 64;
-    bench_result *items = realloc(results->items, (size_t)room * sizeof *items);
+/** Adds an empty result; NULL without memory. */
+static bench_result *add_result(bench_results *results) {
+  if (results->count == results->capacity) {
+    int capacity = results->capacity ? 2 * results->capacity : 64;
+    bench_result *items = realloc(results->items, (size_t)capacity * sizeof *items);
     if (!items)
       return NULL;
     results->items = items;
-    results->room = room;
+    results->capacity = capacity;
   }
   bench_result *item = &results->items[results->count++];
   *item = (bench_result){0};
@@ -173,7 +174,7 @@ vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench
   const bench_result *base = bench_find(results, "memset", resolution, stage->threads, 0);
   if (base && phase->per_grid && phase->kind != BENCH_OPENCL && phase != base->phase && base->median_ms > 0)
     made.of_memset = made.median_ms / base->median_ms;
-  bench_result *place = bench_add(results);
+  bench_result *place = add_result(results);
   if (!place) {
     stage->cli->error.code = VXM_ERROR_MEMORY;
     snprintf(stage->cli->error.text, sizeof stage->cli->error.text, "out of memory");

@@ -15,18 +15,18 @@
 /** A text that grows; `bytes` NULL after a lack of memory, or beyond what is let be. */
 typedef struct buffer {
   unsigned char *bytes;
-  size_t size, room;
+  size_t size, capacity;
   bool lacks;
 } buffer;
 
 static void put(buffer *out, const void *data, size_t size) {
-  if (!out->lacks && size > out->room - out->size) {
-    size_t room = 2 * (out->room + size) + 4096; /* of what is in memory already: it does not wrap */
+  if (!out->lacks && size > out->capacity - out->size) {
+    size_t room = 2 * (out->capacity + size) + 4096; /* of what is in memory already: it does not wrap */
     unsigned char *bytes = realloc(out->bytes, room);
     out->lacks = !bytes;
     if (bytes) {
       out->bytes = bytes;
-      out->room = room;
+      out->capacity = room;
     }
   }
   if (out->lacks)

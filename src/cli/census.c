@@ -55,7 +55,8 @@ static const char *yes(bool value) {
   return value ? "yes" : "no";
 }
 
-const char *cli_measure_text(char text[24], int digits, double value) {
+/** An area or volume, or that it is beyond the range of numbers. */
+static const char *measure_text(char text[24], int digits, double value) {
   if (isfinite(value))
     snprintf(text, 24, "%.*g", digits, value);
   else
@@ -64,7 +65,7 @@ const char *cli_measure_text(char text[24], int digits, double value) {
 }
 
 const char *cli_volume_text(char text[24], int digits, bool closed, double value) {
-  return closed ? cli_measure_text(text, digits, value) : "-";
+  return closed ? measure_text(text, digits, value) : "-";
 }
 
 void cli_census_print(const cli_run *cli, const vxm_census *census) {
@@ -84,7 +85,7 @@ void cli_census_print(const cli_run *cli, const vxm_census *census) {
   fprintf(cli->text, "  %-26s %12.6g %.6g %.6g\n", "least corner", b[0], b[1], b[2]);
   fprintf(cli->text, "  %-26s %12.6g %.6g %.6g\n", "greatest corner", b[3], b[4], b[5]);
   char number[24];
-  fprintf(cli->text, "  %-26s %12s\n", "area", cli_measure_text(number, 6, census->area));
+  fprintf(cli->text, "  %-26s %12s\n", "area", measure_text(number, 6, census->area));
   fprintf(cli->text, "  %-26s %12s%s\n", "volume", cli_volume_text(number, 6, census->closed, census->volume),
           census->closed ? "" : "  none: the mesh is not closed");
 }
@@ -117,8 +118,8 @@ void cli_census_print_both(const cli_run *cli, const vxm_census *before, const v
   fprintf(cli->text, "  %-26s %12s %12s\n", "watertight", yes(before->watertight), yes(after->watertight));
   fprintf(cli->text, "  %-26s %12s %12s\n", "closed", yes(before->closed), yes(after->closed));
   char one[24], other[24];
-  fprintf(cli->text, "  %-26s %12s %12s\n", "area", cli_measure_text(one, 6, before->area),
-          cli_measure_text(other, 6, after->area));
+  fprintf(cli->text, "  %-26s %12s %12s\n", "area", measure_text(one, 6, before->area),
+          measure_text(other, 6, after->area));
   fprintf(cli->text, "  %-26s %12s %12s\n", "volume", cli_volume_text(one, 6, before->closed, before->volume),
           cli_volume_text(other, 6, after->closed, after->volume));
 }

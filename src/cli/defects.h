@@ -7,9 +7,7 @@
 
 /* ---- census.c: the counts ---- */
 
-/** An area or volume, or that it is beyond the range of numbers. */
-const char *cli_measure_text(char text[24], int digits, double value);
-/** The same of a volume; "-" where nothing is enclosed that could have one. */
+/** A volume, or that it is beyond the range of numbers; "-" where nothing is enclosed that could have one. */
 const char *cli_volume_text(char text[24], int digits, bool closed, double value);
 
 /** A row for each count, with what it means where it is not zero. */

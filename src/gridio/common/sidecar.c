@@ -95,18 +95,18 @@ static bool add_about(json_t *root, const vxm_about *about) {
 /** A growing text; NULL as soon as memory failed, of which jansson does not always tell. */
 typedef struct json_text {
   char *data;
-  size_t size, room;
+  size_t size, capacity;
   bool failed;
 } json_text;
 
 static int append_text(const char *data, size_t size, void *payload) {
   json_text *text = payload;
   size_t needed = text->size + size + 1;
-  if (!text->failed && needed > text->room) {
+  if (!text->failed && needed > text->capacity) {
     char *grown = realloc(text->data, 2 * needed);
     text->failed = !grown;
     text->data = grown ? grown : text->data;
-    text->room = grown ? 2 * needed : text->room;
+    text->capacity = grown ? 2 * needed : text->capacity;
   }
   if (text->failed)
     return -1;

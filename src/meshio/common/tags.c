@@ -159,7 +159,7 @@ static vxm_status intern(vxm_tagger *tagger, const char *name, size_t length, ui
 vxm_status vxm_tagger_face_slow(vxm_tagger *tagger, vxm_error *error) {
   vxm_soup *soup = tagger->soup;
   size_t face = soup->face_count;
-  vxm_status status = vxm_grow(soup->context, (void **)&soup->face_tags, &tagger->tag_room, face + 1,
+  vxm_status status = vxm_grow(soup->context, (void **)&soup->face_tags, &tagger->tag_capacity, face + 1,
                                sizeof *soup->face_tags, error);
   if (status == VXM_OK && soup->tag_count == 0 && face > 0) {
     /* Faces were read before the first name: they are the first tag. */

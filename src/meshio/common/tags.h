@@ -29,7 +29,7 @@ typedef struct vxm_tagger {
   uint32_t current;
   uint32_t *slots; /**< open addressing: tag + 1, 0 = free */
   size_t slot_count;
-  size_t tag_room; /**< elements of soup->face_tags */
+  size_t tag_capacity; /**< elements of soup->face_tags */
 } vxm_tagger;
 
 /** Removes all tags of a soup. */
@@ -48,7 +48,7 @@ static inline vxm_status vxm_tagger_face(vxm_tagger *tagger, vxm_error *error) {
   if (__builtin_expect(!tagger->named, 1))
     return VXM_OK;
   size_t face = tagger->soup->face_count;
-  if (tagger->changed || face >= tagger->tag_room)
+  if (tagger->changed || face >= tagger->tag_capacity)
     return vxm_tagger_face_slow(tagger, error);
   tagger->soup->face_tags[face] = tagger->current;
   return VXM_OK;

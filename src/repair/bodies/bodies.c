@@ -30,7 +30,7 @@ typedef struct parting {
   uint8_t *failed; /**< per group: it was asked and could not be */
   vxm_layers layers;
   piece *pieces;
-  size_t piece_count, piece_room;
+  size_t piece_count, piece_capacity;
   vxm_error error;
 } parting;
 
@@ -111,10 +111,10 @@ static bool mark_touching(parting *p, uint8_t *touches) {
 /* ---- Layers ---- */
 
 static bool put(parting *p, uint64_t key, size_t face, bool reversed) {
-  if (p->piece_count == p->piece_room) {
+  if (p->piece_count == p->piece_capacity) {
     void *block = p->pieces;
-    vxm_status status =
-        vxm_grow(p->state->context, &block, &p->piece_room, p->piece_count + 1, sizeof *p->pieces, &p->error);
+    vxm_status status = vxm_grow(p->state->context, &block, &p->piece_capacity, p->piece_count + 1,
+                                 sizeof *p->pieces, &p->error);
     if (status != VXM_OK)
       return fail(p, status);
     p->pieces = block;

@@ -33,7 +33,7 @@ typedef struct balancing {
   int32_t lowest;  /**< level 0 lies between winding numbers lowest - 1 and lowest */
   int levels;
   entry *heap;
-  size_t waiting, room;
+  size_t waiting, capacity;
   uint8_t *tries; /**< per face that stands for a patch: how often it was queued */
   vxm_error error;
 } balancing;
@@ -165,10 +165,10 @@ static bool comes_first(entry a, entry b) {
 }
 
 static bool push(balancing *b, entry e) {
-  if (b->waiting == b->room) {
+  if (b->waiting == b->capacity) {
     void *block = b->heap;
-    if (vxm_grow(b->layers->state->context, &block, &b->room, b->waiting + 1, sizeof *b->heap, &b->error) !=
-        VXM_OK)
+    if (vxm_grow(b->layers->state->context, &block, &b->capacity, b->waiting + 1, sizeof *b->heap,
+                 &b->error) != VXM_OK)
       return false;
     b->heap = block;
   }

@@ -12,7 +12,7 @@
 typedef struct thickening {
   vxm_soup *out;
   uint64_t **origin;
-  size_t room; /**< faces that `origin` has room for */
+  size_t capacity; /**< of `origin`: faces */
   const vxm_soup *from;
   vxm_soup *triangles; /**< of the sheets, with only their vertices */
   uint64_t *source;    /**< per triangle: the face it is a piece of */
@@ -111,8 +111,8 @@ static bool put(thickening *t, const uint32_t *vertices, size_t count, size_t tr
     uint32_t corners[3] = {vertices[0], vertices[i], vertices[i + 1]};
     for (int k = 0; k < 3; k++)
       corners[k] += (uint32_t)t->first;
-    if (vxm_grow(t->out->context, (void **)t->origin, &t->room, t->out->face_count + 1, sizeof **t->origin,
-                 &t->error) != VXM_OK ||
+    if (vxm_grow(t->out->context, (void **)t->origin, &t->capacity, t->out->face_count + 1,
+                 sizeof **t->origin, &t->error) != VXM_OK ||
         vxm_soup_add_face(t->out, corners, 3, &t->error) != VXM_OK)
       return false;
     (*t->origin)[t->out->face_count - 1] = t->source[triangle];
@@ -211,7 +211,7 @@ vxm_status vxm_thicken(vxm_soup *out, uint64_t **origin, const vxm_soup *soup, c
   vxm_context *context = soup->context;
   thickening t = {.out = out,
                   .origin = origin,
-                  .room = out->face_count,
+                  .capacity = out->face_count,
                   .from = soup,
                   .first = out->vertex_count,
                   .offsets.context = context,

@@ -9,9 +9,9 @@
 vxm_status vxm_line_crossings_add(vxm_line_crossings *list, vxm_context *context, const vxm_crossing *one,
                                   vxm_error *error) {
   void *block = list->items;
-  vxm_status status = list->count < list->room ? VXM_OK
-                                               : vxm_grow(context, &block, &list->room, list->count + 1,
-                                                          sizeof *list->items, error);
+  vxm_status status = list->count < list->capacity ? VXM_OK
+                                                   : vxm_grow(context, &block, &list->capacity,
+                                                              list->count + 1, sizeof *list->items, error);
   if (status != VXM_OK)
     return status;
   list->items = block;
@@ -48,9 +48,10 @@ vxm_stretch vxm_stretch_next(const vxm_crossing *begin, const vxm_crossing *end)
 static vxm_status add_span(vxm_spans *spans, vxm_context *context, double low, double high,
                            vxm_error *error) {
   void *block = spans->items;
-  vxm_status status = spans->count < spans->room ? VXM_OK
-                                                 : vxm_grow(context, &block, &spans->room, spans->count + 1,
-                                                            sizeof *spans->items, error);
+  vxm_status status =
+      spans->count < spans->capacity
+          ? VXM_OK
+          : vxm_grow(context, &block, &spans->capacity, spans->count + 1, sizeof *spans->items, error);
   if (status != VXM_OK)
     return status;
   spans->items = block;

@@ -14,7 +14,7 @@ typedef struct vxm_crossing {
 
 typedef struct vxm_line_crossings {
   vxm_crossing *items;
-  size_t count, room;
+  size_t count, capacity;
 } vxm_line_crossings;
 
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
@@ -37,7 +37,7 @@ typedef struct vxm_spans {
   struct vxm_span {
     double low, high;
   } * items;
-  size_t count, room;
+  size_t count, capacity;
 } vxm_spans;
 
 /**

@@ -35,10 +35,10 @@ static vxm_status clear_scratch(vxm_label_component_scratch *scratch, vxm_contex
   if (status == VXM_OK)
     status = vxm_soup_reserve(scratch->soup, 0, faces, corners, error);
   if (status == VXM_OK)
-    status = vxm_grow(context, (void **)&scratch->vertex, &scratch->vertex_room, corners,
+    status = vxm_grow(context, (void **)&scratch->vertex, &scratch->vertex_capacity, corners,
                       sizeof *scratch->vertex, error);
   if (status == VXM_OK)
-    status = vxm_grow(context, (void **)&scratch->slots, &scratch->slot_room, slots_for(corners),
+    status = vxm_grow(context, (void **)&scratch->slots, &scratch->slot_capacity, slots_for(corners),
                       sizeof *scratch->slots, error);
   if (status != VXM_OK)
     return status;

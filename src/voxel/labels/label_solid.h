@@ -12,7 +12,7 @@ typedef struct vxm_label_component_scratch {
   vxm_soup *soup;   /**< the faces of a piece; NULL before the first */
   uint32_t *vertex; /**< of the mesh, for each vertex of `soup` */
   uint32_t *slots;  /**< open addressing over them: place + 1, 0 = free */
-  size_t vertex_room, slot_room;
+  size_t vertex_capacity, slot_capacity;
 } vxm_label_component_scratch;
 
 void vxm_label_component_scratch_destroy(vxm_label_component_scratch *scratch, vxm_context *context);

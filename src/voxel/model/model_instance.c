@@ -11,10 +11,10 @@ vxm_status vxm_model_instance_prepare(const vxm_model *model, vxm_error *error) 
  * comes first. */
 static vxm_status make_surface(vxm_model_instance *instance, const vxm_soup *soup, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  if (soup->vertex_count > instance->vertex_room) {
+  if (soup->vertex_count > instance->vertex_capacity) {
     vxm_free(instance->context, instance->vertices);
     instance->vertices = vxm_alloc(instance->context, soup->vertex_count, sizeof *instance->vertices, &local);
-    instance->vertex_room = instance->vertices ? soup->vertex_count : 0;
+    instance->vertex_capacity = instance->vertices ? soup->vertex_count : 0;
   }
   if (local.code != VXM_OK) {
     vxm_error_pass(error, &local);

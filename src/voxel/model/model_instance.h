@@ -21,7 +21,7 @@ typedef struct vxm_model_instance {
   vxm_context *context;  /**< whose threads work */
   const vxm_model *of;   /**< NULL = attached to none */
   double (*vertices)[3]; /**< of the soup, moved; NULL unless faces set voxels */
-  size_t vertex_room;
+  size_t vertex_capacity;
   bool is_started; /**< whether `pass` is */
   vxm_model_pass pass;
 } vxm_model_instance;

@@ -22,7 +22,7 @@ vxm_status vxm_model_pass_attach(vxm_model_pass *pass, const vxm_mesh_analysis *
   solid->options = *options;
   solid->engine = options->engine;
   size_t parts = analysis->triangles.split.part_count;
-  return vxm_renew(solid->context, (void **)&solid->has_voxels, &pass->part_room, parts,
+  return vxm_renew(solid->context, (void **)&solid->has_voxels, &pass->part_capacity, parts,
                    sizeof *solid->has_voxels, error);
 }
 

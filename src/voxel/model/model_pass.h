@@ -12,7 +12,7 @@
 typedef struct vxm_model_pass {
   vxm_voxel_pass solid; /**< has the options, too, and points to the mesh's analysis */
   vxm_workspace workspace;
-  size_t part_room;             /**< of solid.has_voxels */
+  size_t part_capacity;         /**< of solid.has_voxels */
   vxm_surface *surface;         /**< NULL before the first grid that wants it */
   const double (*vertices)[3];  /**< where the soup's have moved to; NULL = nowhere */
   const double *transform;      /**< of the grid that is made; NULL = none */

@@ -51,16 +51,16 @@ static vxm_int128 floor_div(vxm_int128 a, vxm_int128 b) {
 static bool clip(const half_space *h, const vxm_point *line, int axis, int64_t *low, int64_t *high) {
   vxm_point p = *line;
   p.at[axis] = h->origin.at[axis];
-  vxm_int128 room = along(h->normal, &h->origin, &p) - h->threshold; /* normal (x - origin) + room >= 0 */
+  vxm_int128 excess = along(h->normal, &h->origin, &p) - h->threshold; /* normal (x - origin) + excess >= 0 */
   vxm_int128 n = h->normal[axis];
   if (n == 0)
-    return room >= 0;
+    return excess >= 0;
   if (n > 0) {
-    vxm_int128 x = h->origin.at[axis] - floor_div(room, n);
+    vxm_int128 x = h->origin.at[axis] - floor_div(excess, n);
     if (x > *low)
       *low = x > *high ? *high + 1 : (int64_t)x;
   } else {
-    vxm_int128 x = h->origin.at[axis] + floor_div(room, -n);
+    vxm_int128 x = h->origin.at[axis] + floor_div(excess, -n);
     if (x < *high)
       *high = x < *low ? *low - 1 : (int64_t)x;
   }

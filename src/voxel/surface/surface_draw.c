@@ -111,8 +111,8 @@ bool vxm_surface_draw_some(const vxm_surface_pen *pen, const uint32_t *list, siz
     else
       for (size_t i = from; i < to; i++) {
         const vxm_point *v[3];
-        vxm_point room[3];
-        vxm_surface_corners(pen->surface, list ? list[i] : i, v, room);
+        vxm_point copies[3];
+        vxm_surface_corners(pen->surface, list ? list[i] : i, v, copies);
         rows += 1 + vxm_surface_draw(pen, v);
       }
     if (rows < POLL_ROWS)

@@ -178,13 +178,13 @@ static inline bool vxm_surface_meet(vxm_surface_box *box, const vxm_surface_box 
 /** Sets the triangle's voxels within the tile; returns about how many rows it looked at. */
 size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]);
 
-/** The corners of a triangle, which are put to `room` where they are narrow. */
+/** The corners of a triangle, of which `copies` holds the points. */
 static inline void vxm_surface_corners(const vxm_surface *surface, size_t triangle, const vxm_point *v[3],
-                                       vxm_point room[3]) {
+                                       vxm_point copies[3]) {
   const uint32_t *corner = surface->corners + 3 * triangle;
   for (int c = 0; c < 3; c++) {
-    room[c] = vxm_surface_at(surface, corner[c]);
-    v[c] = &room[c];
+    copies[c] = vxm_surface_at(surface, corner[c]);
+    v[c] = &copies[c];
   }
 }
 

@@ -83,16 +83,16 @@ static inline test_line edge_test(const vxm_surface_pen *pen, const plane_shape 
  */
 static inline void clip_spans(const test_line *line, int64_t origin, int64_t y, vxm_surface_span *spans,
                               size_t count, int32_t least, int32_t most) {
-  integer room = line->c * (integer)y + line->b;
+  integer value = line->c * (integer)y + line->b;
   if (line->a == 0) {
-    for (size_t i = 0; i < count; i++, room += line->c)
-      spans[i].end = room < 0 ? least : spans[i].end;
+    for (size_t i = 0; i < count; i++, value += line->c)
+      spans[i].end = value < 0 ? least : spans[i].end;
     return;
   }
   integer d = line->a < 0 ? -line->a : line->a, q, r, step_q, step_r;
-  divide_floor(room, d, &q, &r);
+  divide_floor(value, d, &q, &r);
   divide_floor(line->c, d, &step_q, &step_r);
-  if (line->a < 0) { /* x <= room / d */
+  if (line->a < 0) { /* x <= value / d */
     q += origin + 1;
     for (size_t i = 0; i < count; i++) {
       integer end = q > least ? q : least;
@@ -102,7 +102,7 @@ static inline void clip_spans(const test_line *line, int64_t origin, int64_t y, 
       q += step_q + carry;
       r -= carry ? d : 0;
     }
-  } else { /* x >= -room / d */
+  } else { /* x >= -value / d */
     q -= origin;
     for (size_t i = 0; i < count; i++) {
       integer begin = -q < most ? -q : most;

@@ -77,8 +77,8 @@ static void narrow(vxm_surface_box *box, const vxm_surface_box *tile, const vxm_
 /** Marks the words of rows that a triangle may touch. */
 static void mark(uint64_t *touched, const vxm_surface_pen *pen, uint32_t triangle) {
   const vxm_point *v[3];
-  vxm_point room[3];
-  vxm_surface_corners(pen->surface, triangle, v, room);
+  vxm_point copies[3];
+  vxm_surface_corners(pen->surface, triangle, v, copies);
   vxm_surface_box box = vxm_surface_bounds_of(pen->lattice, pen->window->layout, v).box;
   if (!vxm_surface_meet(&box, &pen->tile))
     return;

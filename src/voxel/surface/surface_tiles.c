@@ -166,9 +166,9 @@ static void place_some(const tiling *t, size_t begin, size_t end) {
   }
   for (size_t i = begin; i < end; i++) {
     const vxm_point *v[3];
-    vxm_point room[3];
+    vxm_point copies[3];
     vxm_surface_box box;
-    vxm_surface_corners(t->surface, i, v, room);
+    vxm_surface_corners(t->surface, i, v, copies);
     t->places[i] = place_triangle(t, v, &box);
   }
 }
@@ -181,9 +181,9 @@ static void sort_some(const tiling *t, size_t *counter, size_t begin, size_t end
       continue;
     if (place == VXM_SURFACE_PLACE_LARGE) {
       const vxm_point *v[3];
-      vxm_point room[3];
+      vxm_point copies[3];
       vxm_surface_box box;
-      vxm_surface_corners(t->surface, i, v, room);
+      vxm_surface_corners(t->surface, i, v, copies);
       place_triangle(t, v, &box);
       sort_large(t, v, &box, counter, t->list, (uint32_t)i);
     } else
