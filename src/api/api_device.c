@@ -2,7 +2,6 @@
 /** The public functions of voxels that stay on a device: they check arguments and call down. */
 #include "augment/sampler.h"
 #include "base/sized.h"
-#include "grid/space.h"
 #include "voxel/model/model_device_voxels.h"
 
 static vxm_status check_format(vxm_voxel_format format, vxm_error *error) {

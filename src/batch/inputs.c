@@ -3,7 +3,6 @@
 #include "batch/archive.h"
 #include "batch/tree.h"
 
-#include <errno.h>
 #include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>

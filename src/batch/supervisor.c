@@ -3,7 +3,6 @@
 #include "batch/plan.h"
 #include "batch/run.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>

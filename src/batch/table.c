@@ -2,7 +2,6 @@
 /** Lists of paths, and tables as RFC 4180 has them (.csv), or with tabs (.tsv). */
 #include "batch/inputs.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

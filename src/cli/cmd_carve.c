@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend carve: what a tool leaves of a grid along its path. */
-#include "cli/repair.h"
 #include "cli/repair_common.h"
 #include "cli/toolpath.h"
 #include "cli/values.h"

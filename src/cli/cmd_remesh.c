@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend remesh: a closed surface of a mesh's solid, at the resolution of a grid. */
-#include "cli/repair.h"
 #include "cli/repair_common.h"
 #include "cli/voxelize_common.h"
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/node_values.h"
 
-#include <string.h>
-
 /* ---- Bits ---- */
 
 /** Puts a brick's 16 rows of four voxels to those of its node. */

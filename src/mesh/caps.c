@@ -4,7 +4,6 @@
 #include "base/hash.h"
 #include "mesh/geometry.h"
 
-#include <math.h>
 #include <string.h>
 
 enum {

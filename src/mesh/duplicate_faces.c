@@ -3,8 +3,8 @@
 
 #include "base/hash.h"
 #include "base/threads.h"
-#include "mesh/edges.h"
 #include "mesh/radix_partition.h"
+#include "mesh/side_table.h"
 
 #include <stdatomic.h>
 #include <string.h>

@@ -8,7 +8,6 @@
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/zarr.h"
 
-#include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>

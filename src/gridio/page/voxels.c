@@ -3,7 +3,6 @@
 #include "base/endian.h"
 #include "gridio/common/label_color.h"
 #include "gridio/page/parts.h"
-#include "gridio/picture/palette.h"
 #include "gridio/picture/picture.h"
 
 #include <math.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The picture of a field: which of its voxels are drawn, and in what colours. */
 #include "gridio/common/label_color.h"
-#include "gridio/picture/palette.h"
 #include "gridio/picture/picture.h"
 #include "gridio/picture/slice.h"
 #include "mesh/appearance.h"

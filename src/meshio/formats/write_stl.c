@@ -10,7 +10,6 @@
 #include "meshio/common/write_flags.h"
 #include "meshio/formats/stl.h"
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 

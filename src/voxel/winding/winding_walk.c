@@ -2,7 +2,6 @@
 #include "voxel/winding/winding_walk.h"
 #include "base/cpu.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <string.h>
 
