@@ -28,15 +28,10 @@ static double diagonal(const box *b) {
 
 /** Box of the finite vertices that faces use. */
 static vxm_status box_of_soup(box *out, const vxm_soup *soup, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  uint8_t *used = vxm_alloc(soup->context, soup->vertex_count, sizeof *used, &local);
-  if (!used) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
   vxm_extent extent;
-  vxm_extent_of(&extent, soup->context, soup, used);
-  vxm_free(soup->context, used);
+  vxm_status status = vxm_extent_find(&extent, soup->context, soup, error);
+  if (status != VXM_OK)
+    return status;
   for (int a = 0; a < 3; a++) {
     out->low[a] = extent.bounds[a];
     out->high[a] = extent.bounds[a + 3];

@@ -94,12 +94,9 @@ static void add_edges(measuring *m, const vxm_edges *edges) {
 }
 
 static vxm_status measure(measuring *m, size_t part_count) {
-  uint8_t *used = vxm_alloc(m->view.context, m->view.vertex_count, 1, &m->error);
-  if (!used)
-    return m->error.code;
   vxm_extent extent;
-  vxm_extent_of(&extent, m->view.context, &m->view, used);
-  vxm_free(m->view.context, used);
+  if (vxm_extent_find(&extent, m->view.context, &m->view, &m->error) != VXM_OK)
+    return m->error.code;
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
   memset(m->states, 0, part_count * sizeof *m->states);
   for (size_t p = 0; p < part_count; p++) {

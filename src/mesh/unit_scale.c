@@ -86,6 +86,18 @@ void vxm_extent_of(vxm_extent *out, vxm_context *context, const vxm_soup *soup, 
     out->bounds[i] = isinf(out->bounds[i]) ? 0.0 : out->bounds[i] + 0.0;
 }
 
+vxm_status vxm_extent_find(vxm_extent *out, vxm_context *context, const vxm_soup *soup, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  uint8_t *used = vxm_alloc(context, soup->vertex_count, sizeof *used, &local);
+  if (!used) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  vxm_extent_of(out, context, soup, used);
+  vxm_free(context, used);
+  return VXM_OK;
+}
+
 vxm_unit_scale vxm_unit_scale_of(const double bounds[6]) {
   double longest = 0, squared = 0;
   vxm_unit_scale frame = {.scale = 1};

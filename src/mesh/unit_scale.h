@@ -24,6 +24,9 @@ typedef struct vxm_extent {
 
 /** @param used vertex_count elements that are set to 1 where a face has the vertex, else to 0 */
 void vxm_extent_of(vxm_extent *out, vxm_context *context, const vxm_soup *soup, uint8_t *used);
+/** The same for those who do not ask which vertices are used. @return VXM_OK, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT */
+vxm_status vxm_extent_find(vxm_extent *out, vxm_context *context, const vxm_soup *soup, vxm_error *error);
 
 /**
  * The frame in which areas are computed, so that neither huge nor tiny models overflow or vanish: positions

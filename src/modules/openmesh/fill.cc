@@ -92,12 +92,9 @@ private:
 
 void filling::measure() {
   vxm_error error = VXM_ERROR_INIT;
-  auto *used = static_cast<uint8_t *>(vxm_alloc(soup_->context, soup_->vertex_count, 1, &error));
-  if (!used)
-    throw failure{error};
   vxm_extent extent;
-  vxm_extent_of(&extent, soup_->context, soup_, used);
-  vxm_free(soup_->context, used);
+  if (vxm_extent_find(&extent, soup_->context, soup_, &error) != VXM_OK)
+    throw failure{error};
   frame_ = vxm_unit_scale_of(extent.bounds);
 }
 

@@ -25,11 +25,8 @@ vxm_status vxm_wrap_soup(vxm_soup **out, uint64_t **nearest, vxm_soup *soup, dou
   vxm_error local = VXM_ERROR_INIT;
   *out = NULL;
   *nearest = NULL;
-  uint8_t *used = vxm_alloc(soup->context, soup->vertex_count, 1, &local);
-  if (used)
-    vxm_extent_of(&extent, soup->context, soup, used);
-  vxm_free(soup->context, used);
-  if (used && vxm_cgal_open(&cgal, "wrapping a mesh", &local) == VXM_OK) {
+  if (vxm_extent_find(&extent, soup->context, soup, &local) == VXM_OK &&
+      vxm_cgal_open(&cgal, "wrapping a mesh", &local) == VXM_OK) {
     vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
     double size = alpha * frame.diagonal, distance = offset > 0 ? offset * frame.diagonal : size / 30;
     shrink(soup, frame.scale);

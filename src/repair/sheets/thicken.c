@@ -193,11 +193,8 @@ static bool thicken(thickening *t, const uint8_t *faces, double thickness) {
   if (t->triangles->face_count == 0) /* spikes */
     return true;
   vxm_extent extent;
-  uint8_t *used = vxm_alloc(t->from->context, t->triangles->vertex_count, 1, &t->error);
-  if (!used)
+  if (vxm_extent_find(&extent, t->from->context, t->triangles, &t->error) != VXM_OK)
     return false;
-  vxm_extent_of(&extent, t->from->context, t->triangles, used);
-  vxm_free(t->from->context, used);
   double scale = vxm_unit_scale_of(extent.bounds).scale;
   if (vxm_sheet_sides_build(&t->sides, t->triangles, scale, &t->error) != VXM_OK ||
       vxm_sheet_offsets_find(&t->offsets, &t->sides, thickness / 2, scale, &t->error) != VXM_OK)

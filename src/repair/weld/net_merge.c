@@ -34,18 +34,10 @@ static vxm_status make_trial(vxm_repair_state *trial, const vxm_repair_state *st
 }
 
 static vxm_status count_used(size_t *count, const vxm_soup *soup, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  uint8_t *used = vxm_alloc(soup->context, soup->vertex_count, sizeof *used, &local);
-  *count = 0;
-  if (!used) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
   vxm_extent extent;
-  vxm_extent_of(&extent, soup->context, soup, used);
-  *count = soup->vertex_count - extent.unused;
-  vxm_free(soup->context, used);
-  return VXM_OK;
+  vxm_status status = vxm_extent_find(&extent, soup->context, soup, error);
+  *count = status == VXM_OK ? soup->vertex_count - extent.unused : 0;
+  return status;
 }
 
 /** Separates the trial and counts what is left. */

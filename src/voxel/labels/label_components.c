@@ -97,12 +97,9 @@ static void bound_bodies(builder *b, double scale) {
 
 /** Signed volumes; a corner that is not finite makes one NaN. */
 static vxm_status measure_bodies(builder *b) {
-  uint8_t *used = allocate(b, b->soup->vertex_count, sizeof *used);
-  if (!used)
-    return b->error.code;
   vxm_extent extent;
-  vxm_extent_of(&extent, b->soup->context, b->soup, used);
-  vxm_free(b->soup->context, used);
+  if (vxm_extent_find(&extent, b->soup->context, b->soup, &b->error) != VXM_OK)
+    return b->error.code;
   double scale = vxm_unit_scale_of(extent.bounds).scale;
   bound_bodies(b, scale);
   for (size_t f = 0; f < b->soup->face_count; f++) {

@@ -105,12 +105,9 @@ static vxm_status make_caps(builder *b, double scale, double *area) {
 
 /** A scale in which areas neither overflow nor vanish. */
 static vxm_status find_scale(builder *b, double *scale) {
-  uint8_t *used = allocate(b, b->soup->vertex_count, sizeof *used);
-  if (!used)
-    return b->error.code;
   vxm_extent extent;
-  vxm_extent_of(&extent, b->split->context, b->soup, used);
-  vxm_free(b->split->context, used);
+  if (vxm_extent_find(&extent, b->split->context, b->soup, &b->error) != VXM_OK)
+    return b->error.code;
   *scale = vxm_unit_scale_of(extent.bounds).scale;
   return VXM_OK;
 }
