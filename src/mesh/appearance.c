@@ -16,24 +16,24 @@ vxm_status vxm_appearance_create(vxm_appearance **out, vxm_context *context, vxm
   return VXM_OK;
 }
 
-void vxm_appearance_destroy(vxm_appearance *look) {
-  if (!look)
+void vxm_appearance_destroy(vxm_appearance *appearance) {
+  if (!appearance)
     return;
-  vxm_context *context = look->context;
-  for (size_t i = 0; i < look->image_count; i++)
-    vxm_free(context, look->images[i].bytes);
-  vxm_free(context, look->libraries);
-  vxm_free(context, look->vertices.rgb);
-  vxm_free(context, look->faces.rgb);
-  vxm_free(context, look->images);
-  vxm_free(context, look->materials);
-  vxm_free(context, look->material_names.slots);
-  vxm_free(context, look->image_names.slots);
-  vxm_free(context, look->face_materials);
-  vxm_free(context, look->corner_uvs);
-  vxm_free(context, look->face_colors);
-  vxm_free(context, look->vertex_colors);
-  vxm_free(context, look);
+  vxm_context *context = appearance->context;
+  for (size_t i = 0; i < appearance->image_count; i++)
+    vxm_free(context, appearance->images[i].bytes);
+  vxm_free(context, appearance->libraries);
+  vxm_free(context, appearance->vertices.rgb);
+  vxm_free(context, appearance->faces.rgb);
+  vxm_free(context, appearance->images);
+  vxm_free(context, appearance->materials);
+  vxm_free(context, appearance->material_names.slots);
+  vxm_free(context, appearance->image_names.slots);
+  vxm_free(context, appearance->face_materials);
+  vxm_free(context, appearance->corner_uvs);
+  vxm_free(context, appearance->face_colors);
+  vxm_free(context, appearance->vertex_colors);
+  vxm_free(context, appearance);
 }
 
 /* ---- Light ---- */
@@ -98,18 +98,20 @@ static vxm_status settle(uint8_t (**out)[4], size_t *out_count, vxm_gathered *ga
   return VXM_OK;
 }
 
-vxm_status vxm_appearance_settle(vxm_appearance *look, size_t vertices, size_t faces, vxm_error *error) {
-  vxm_status status = settle(&look->vertex_colors, &look->vertex_color_count, &look->vertices, vertices,
-                             look->context, error);
+vxm_status vxm_appearance_settle(vxm_appearance *appearance, size_t vertices, size_t faces,
+                                 vxm_error *error) {
+  vxm_status status = settle(&appearance->vertex_colors, &appearance->vertex_color_count,
+                             &appearance->vertices, vertices, appearance->context, error);
   if (status == VXM_OK)
-    status = settle(&look->face_colors, &look->face_color_count, &look->faces, faces, look->context, error);
+    status = settle(&appearance->face_colors, &appearance->face_color_count, &appearance->faces, faces,
+                    appearance->context, error);
   return status;
 }
 
 /* ---- Materials and images ---- */
 
-static void take_name(char out[VXM_LOOK_NAME], const char *name, size_t length) {
-  size_t kept = length < VXM_LOOK_NAME - 1 ? length : VXM_LOOK_NAME - 1;
+static void take_name(char out[VXM_APPEARANCE_NAME], const char *name, size_t length) {
+  size_t kept = length < VXM_APPEARANCE_NAME - 1 ? length : VXM_APPEARANCE_NAME - 1;
   for (size_t i = 0; i < kept; i++) /* it will stand in messages */
     out[i] = (unsigned char)name[i] < ' ' || name[i] == 0x7f ? '?' : name[i];
   out[kept] = '\0';
@@ -121,12 +123,13 @@ typedef struct name_list {
   size_t stride;
 } name_list;
 
-static name_list materials_of(const vxm_appearance *look) {
-  return (name_list){look->materials ? look->materials->name : NULL, sizeof *look->materials};
+static name_list materials_of(const vxm_appearance *appearance) {
+  return (name_list){appearance->materials ? appearance->materials->name : NULL,
+                     sizeof *appearance->materials};
 }
 
-static name_list images_of(const vxm_appearance *look) {
-  return (name_list){look->images ? look->images->name : NULL, sizeof *look->images};
+static name_list images_of(const vxm_appearance *appearance) {
+  return (name_list){appearance->images ? appearance->images->name : NULL, sizeof *appearance->images};
 }
 
 static const char *name_at(name_list list, size_t number) {
@@ -163,31 +166,32 @@ static vxm_status widen(vxm_name_index *index, vxm_context *context, name_list l
   return VXM_OK;
 }
 
-vxm_status vxm_appearance_add_material(vxm_appearance *look, const char *name, size_t length,
+vxm_status vxm_appearance_add_material(vxm_appearance *appearance, const char *name, size_t length,
                                        uint32_t *material, vxm_error *error) {
-  vxm_status status = vxm_grow(look->context, (void **)&look->materials, &look->material_capacity,
-                               look->material_count + 1, sizeof *look->materials, error);
+  vxm_status status =
+      vxm_grow(appearance->context, (void **)&appearance->materials, &appearance->material_capacity,
+               appearance->material_count + 1, sizeof *appearance->materials, error);
   if (status != VXM_OK)
     return status;
-  *material = (uint32_t)look->material_count++;
-  vxm_material *made = &look->materials[*material];
-  *made = (vxm_material){.color = {1, 1, 1}, .image = VXM_NO_LOOK};
+  *material = (uint32_t)appearance->material_count++;
+  vxm_material *made = &appearance->materials[*material];
+  *made = (vxm_material){.color = {1, 1, 1}, .image = VXM_APPEARANCE_NONE};
   take_name(made->name, name, length);
   return VXM_OK;
 }
 
-vxm_status vxm_appearance_material(vxm_appearance *look, const char *name, size_t length, uint32_t *material,
-                                   vxm_error *error) {
-  char cut[VXM_LOOK_NAME];
+vxm_status vxm_appearance_material(vxm_appearance *appearance, const char *name, size_t length,
+                                   uint32_t *material, vxm_error *error) {
+  char cut[VXM_APPEARANCE_NAME];
   take_name(cut, name, length);
-  vxm_name_index *index = &look->material_names;
-  vxm_status status = widen(index, look->context, materials_of(look), error);
-  uint32_t *slot = status == VXM_OK ? find_slot(index, materials_of(look), cut) : NULL;
+  vxm_name_index *index = &appearance->material_names;
+  vxm_status status = widen(index, appearance->context, materials_of(appearance), error);
+  uint32_t *slot = status == VXM_OK ? find_slot(index, materials_of(appearance), cut) : NULL;
   if (!slot || *slot) {
     *material = slot ? *slot - 1 : 0;
     return status;
   }
-  status = vxm_appearance_add_material(look, name, length, material, error);
+  status = vxm_appearance_add_material(appearance, name, length, material, error);
   if (status == VXM_OK) {
     *slot = *material + 1;
     index->count++;
@@ -195,75 +199,77 @@ vxm_status vxm_appearance_material(vxm_appearance *look, const char *name, size_
   return status;
 }
 
-bool vxm_appearance_find_material(const vxm_appearance *look, const char *name, size_t length,
+bool vxm_appearance_find_material(const vxm_appearance *appearance, const char *name, size_t length,
                                   uint32_t *material) {
-  char cut[VXM_LOOK_NAME];
+  char cut[VXM_APPEARANCE_NAME];
   take_name(cut, name, length);
-  if (look->material_names.capacity == 0)
+  if (appearance->material_names.capacity == 0)
     return false;
-  const uint32_t *slot = find_slot(&look->material_names, materials_of(look), cut);
+  const uint32_t *slot = find_slot(&appearance->material_names, materials_of(appearance), cut);
   *material = *slot - 1;
   return *slot != 0;
 }
 
-vxm_status vxm_appearance_image(vxm_appearance *look, const char *name, size_t length, uint32_t *image,
+vxm_status vxm_appearance_image(vxm_appearance *appearance, const char *name, size_t length, uint32_t *image,
                                 vxm_error *error) {
-  char cut[VXM_LOOK_NAME];
+  char cut[VXM_APPEARANCE_NAME];
   take_name(cut, name, length);
-  vxm_name_index *index = &look->image_names;
-  vxm_status status = widen(index, look->context, images_of(look), error);
+  vxm_name_index *index = &appearance->image_names;
+  vxm_status status = widen(index, appearance->context, images_of(appearance), error);
   if (status != VXM_OK)
     return status;
-  uint32_t *slot = find_slot(index, images_of(look), cut);
+  uint32_t *slot = find_slot(index, images_of(appearance), cut);
   if (*slot) {
     *image = *slot - 1;
     return VXM_OK;
   }
-  status = vxm_grow(look->context, (void **)&look->images, &look->image_capacity, look->image_count + 1,
-                    sizeof *look->images, error);
+  status = vxm_grow(appearance->context, (void **)&appearance->images, &appearance->image_capacity,
+                    appearance->image_count + 1, sizeof *appearance->images, error);
   if (status != VXM_OK)
     return status;
-  *image = (uint32_t)look->image_count++;
+  *image = (uint32_t)appearance->image_count++;
   *slot = *image + 1;
   index->count++;
-  memset(&look->images[*image], 0, sizeof *look->images);
-  memcpy(look->images[*image].name, cut, sizeof cut);
+  memset(&appearance->images[*image], 0, sizeof *appearance->images);
+  memcpy(appearance->images[*image].name, cut, sizeof cut);
   return VXM_OK;
 }
 
-vxm_status vxm_appearance_set_material(vxm_appearance *look, size_t face, uint32_t material,
+vxm_status vxm_appearance_set_material(vxm_appearance *appearance, size_t face, uint32_t material,
                                        vxm_error *error) {
-  vxm_status status = vxm_grow(look->context, (void **)&look->face_materials, &look->face_material_capacity,
-                               face + 1, sizeof *look->face_materials, error);
+  vxm_status status =
+      vxm_grow(appearance->context, (void **)&appearance->face_materials, &appearance->face_material_capacity,
+               face + 1, sizeof *appearance->face_materials, error);
   if (status != VXM_OK)
     return status;
-  while (look->face_material_count < face)
-    look->face_materials[look->face_material_count++] = VXM_NO_LOOK;
-  look->face_materials[face] = material;
-  look->face_material_count = face + 1;
+  while (appearance->face_material_count < face)
+    appearance->face_materials[appearance->face_material_count++] = VXM_APPEARANCE_NONE;
+  appearance->face_materials[face] = material;
+  appearance->face_material_count = face + 1;
   return VXM_OK;
 }
 
 /* ---- Faces that are left out ---- */
 
-void vxm_appearance_move_face(vxm_appearance *look, size_t to, size_t from, size_t to_corner,
+void vxm_appearance_move_face(vxm_appearance *appearance, size_t to, size_t from, size_t to_corner,
                               size_t from_corner, size_t corners) {
-  if (from < look->faces.count)
-    memcpy(look->faces.rgb[to], look->faces.rgb[from], sizeof look->faces.rgb[to]);
-  if (from < look->face_material_count)
-    look->face_materials[to] = look->face_materials[from];
-  if (from_corner + corners <= look->corner_uv_count)
-    memmove(look->corner_uvs + to_corner, look->corner_uvs + from_corner, corners * sizeof *look->corner_uvs);
+  if (from < appearance->faces.count)
+    memcpy(appearance->faces.rgb[to], appearance->faces.rgb[from], sizeof appearance->faces.rgb[to]);
+  if (from < appearance->face_material_count)
+    appearance->face_materials[to] = appearance->face_materials[from];
+  if (from_corner + corners <= appearance->corner_uv_count)
+    memmove(appearance->corner_uvs + to_corner, appearance->corner_uvs + from_corner,
+            corners * sizeof *appearance->corner_uvs);
 }
 
-bool vxm_appearance_has_colors(const vxm_appearance *look) {
-  if (!look)
+bool vxm_appearance_has_colors(const vxm_appearance *appearance) {
+  if (!appearance)
     return false;
-  bool has = look->vertex_colors || look->face_colors;
-  for (size_t m = 0; m < look->material_count && look->face_materials && !has; m++) {
-    const vxm_material *material = &look->materials[m];
-    has = material->has_color || (material->image < look->image_count &&
-                                  look->images[material->image].width > 0 && look->corner_uvs);
+  bool has = appearance->vertex_colors || appearance->face_colors;
+  for (size_t m = 0; m < appearance->material_count && appearance->face_materials && !has; m++) {
+    const vxm_material *material = &appearance->materials[m];
+    has = material->has_color || (material->image < appearance->image_count &&
+                                  appearance->images[material->image].width > 0 && appearance->corner_uvs);
   }
   return has;
 }

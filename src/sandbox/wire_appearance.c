@@ -13,28 +13,30 @@ typedef struct look_counts {
 
 /* ---- Sending ---- */
 
-bool vxm_wire_send_appearance(int channel, const vxm_appearance *look) {
-  const look_counts counts = {.vertex_colors = look->vertex_color_count,
-                              .face_colors = look->face_color_count,
-                              .corner_uvs = look->corner_uv_count,
-                              .face_materials = look->face_material_count,
-                              .materials = look->material_count,
-                              .images = look->image_count,
-                              .is_product = look->is_product};
-  bool sent =
-      vxm_message_send(channel, &counts, sizeof counts) &&
-      vxm_message_send(channel, look->vertex_colors,
-                       look->vertex_color_count * sizeof *look->vertex_colors) &&
-      vxm_message_send(channel, look->face_colors, look->face_color_count * sizeof *look->face_colors) &&
-      vxm_message_send(channel, look->corner_uvs, look->corner_uv_count * sizeof *look->corner_uvs) &&
-      vxm_message_send(channel, look->face_materials,
-                       look->face_material_count * sizeof *look->face_materials) &&
-      vxm_message_send(channel, look->materials, look->material_count * sizeof *look->materials);
-  for (size_t i = 0; i < look->image_count && sent; i++) {
-    vxm_image image = look->images[i];
+bool vxm_wire_send_appearance(int channel, const vxm_appearance *appearance) {
+  const look_counts counts = {.vertex_colors = appearance->vertex_color_count,
+                              .face_colors = appearance->face_color_count,
+                              .corner_uvs = appearance->corner_uv_count,
+                              .face_materials = appearance->face_material_count,
+                              .materials = appearance->material_count,
+                              .images = appearance->image_count,
+                              .is_product = appearance->is_product};
+  bool sent = vxm_message_send(channel, &counts, sizeof counts) &&
+              vxm_message_send(channel, appearance->vertex_colors,
+                               appearance->vertex_color_count * sizeof *appearance->vertex_colors) &&
+              vxm_message_send(channel, appearance->face_colors,
+                               appearance->face_color_count * sizeof *appearance->face_colors) &&
+              vxm_message_send(channel, appearance->corner_uvs,
+                               appearance->corner_uv_count * sizeof *appearance->corner_uvs) &&
+              vxm_message_send(channel, appearance->face_materials,
+                               appearance->face_material_count * sizeof *appearance->face_materials) &&
+              vxm_message_send(channel, appearance->materials,
+                               appearance->material_count * sizeof *appearance->materials);
+  for (size_t i = 0; i < appearance->image_count && sent; i++) {
+    vxm_image image = appearance->images[i];
     image.bytes = NULL;
     sent = vxm_message_send(channel, &image, sizeof image) &&
-           vxm_message_send(channel, look->images[i].bytes, (size_t)image.size);
+           vxm_message_send(channel, appearance->images[i].bytes, (size_t)image.size);
   }
   return sent;
 }
@@ -57,7 +59,7 @@ static vxm_status receive_array(void **out, size_t *out_count, uint64_t count, s
 }
 
 static bool is_sound_material(vxm_material *material, uint64_t images) {
-  bool good = (material->image == VXM_NO_LOOK || material->image < images) &&
+  bool good = (material->image == VXM_APPEARANCE_NONE || material->image < images) &&
               material->wrap[0] <= VXM_WRAP_MIRROR && material->wrap[1] <= VXM_WRAP_MIRROR;
   unsigned char has_color;
   memcpy(&has_color, &material->has_color, 1); /* as a byte: a bool may hold anything */
@@ -84,25 +86,27 @@ static vxm_status receive_image(vxm_image *image, vxm_context *context, vxm_proc
   return receive_array((void **)&image->bytes, &size, image->size, 1, context, sender, error);
 }
 
-static vxm_status receive_images(vxm_appearance *look, uint64_t count, vxm_process *sender,
+static vxm_status receive_images(vxm_appearance *appearance, uint64_t count, vxm_process *sender,
                                  vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   if (count == 0)
     return VXM_OK;
-  look->images = vxm_calloc(look->context, (size_t)count, sizeof *look->images, &local);
-  if (!look->images) {
+  appearance->images = vxm_calloc(appearance->context, (size_t)count, sizeof *appearance->images, &local);
+  if (!appearance->images) {
     vxm_error_pass(error, &local);
     return local.code;
   }
-  look->image_capacity = (size_t)count;
+  appearance->image_capacity = (size_t)count;
   vxm_status status = VXM_OK;
-  while (look->image_count < count && status == VXM_OK) /* counted first, as it may have bytes by then */
-    status = receive_image(&look->images[look->image_count++], look->context, sender, error);
+  while (appearance->image_count < count &&
+         status == VXM_OK) /* counted first, as it may have bytes by then */
+    status =
+        receive_image(&appearance->images[appearance->image_count++], appearance->context, sender, error);
   return status;
 }
 
 vxm_status vxm_wire_receive_appearance(vxm_soup *soup, vxm_process *sender, vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
+  vxm_appearance *appearance = soup->appearance;
   vxm_context *context = soup->context;
   look_counts counts;
   vxm_status status = vxm_process_receive(sender, &counts, sizeof counts, error);
@@ -115,27 +119,28 @@ vxm_status vxm_wire_receive_appearance(vxm_soup *soup, vxm_process *sender, vxm_
       counts.face_materials > soup->face_count || counts.materials > MOST || counts.images > MOST ||
       counts.is_product > 1)
     return vxm_message_damaged(error);
-  look->is_product = counts.is_product;
-  status = receive_array((void **)&look->vertex_colors, &look->vertex_color_count, counts.vertex_colors,
-                         sizeof *look->vertex_colors, context, sender, error);
+  appearance->is_product = counts.is_product;
+  status = receive_array((void **)&appearance->vertex_colors, &appearance->vertex_color_count,
+                         counts.vertex_colors, sizeof *appearance->vertex_colors, context, sender, error);
   if (status == VXM_OK)
-    status = receive_array((void **)&look->face_colors, &look->face_color_count, counts.face_colors,
-                           sizeof *look->face_colors, context, sender, error);
+    status = receive_array((void **)&appearance->face_colors, &appearance->face_color_count,
+                           counts.face_colors, sizeof *appearance->face_colors, context, sender, error);
   if (status == VXM_OK)
-    status = receive_array((void **)&look->corner_uvs, &look->corner_uv_count, counts.corner_uvs,
-                           sizeof *look->corner_uvs, context, sender, error);
+    status = receive_array((void **)&appearance->corner_uvs, &appearance->corner_uv_count, counts.corner_uvs,
+                           sizeof *appearance->corner_uvs, context, sender, error);
   if (status == VXM_OK)
-    status = receive_array((void **)&look->face_materials, &look->face_material_count, counts.face_materials,
-                           sizeof *look->face_materials, context, sender, error);
+    status = receive_array((void **)&appearance->face_materials, &appearance->face_material_count,
+                           counts.face_materials, sizeof *appearance->face_materials, context, sender, error);
   if (status == VXM_OK)
-    status = receive_array((void **)&look->materials, &look->material_count, counts.materials,
-                           sizeof *look->materials, context, sender, error);
+    status = receive_array((void **)&appearance->materials, &appearance->material_count, counts.materials,
+                           sizeof *appearance->materials, context, sender, error);
   bool good = true;
-  for (size_t f = 0; f < look->face_material_count && status == VXM_OK; f++)
-    good = good && (look->face_materials[f] == VXM_NO_LOOK || look->face_materials[f] < counts.materials);
-  for (size_t m = 0; m < look->material_count && status == VXM_OK; m++)
-    good = is_sound_material(&look->materials[m], counts.images) && good;
+  for (size_t f = 0; f < appearance->face_material_count && status == VXM_OK; f++)
+    good = good && (appearance->face_materials[f] == VXM_APPEARANCE_NONE ||
+                    appearance->face_materials[f] < counts.materials);
+  for (size_t m = 0; m < appearance->material_count && status == VXM_OK; m++)
+    good = is_sound_material(&appearance->materials[m], counts.images) && good;
   if (status == VXM_OK && !good)
     status = vxm_message_damaged(error);
-  return status == VXM_OK ? receive_images(look, counts.images, sender, error) : status;
+  return status == VXM_OK ? receive_images(appearance, counts.images, sender, error) : status;
 }

@@ -7,7 +7,7 @@
 #include "mesh/soup.h"
 
 /** The reading side; false if our process has gone. */
-bool vxm_wire_send_appearance(int channel, const vxm_appearance *look);
+bool vxm_wire_send_appearance(int channel, const vxm_appearance *appearance);
 
 /** Fills the empty appearance of a soup that has arrived. Nothing of it is trusted. @return as
  * vxm_wire_receive */

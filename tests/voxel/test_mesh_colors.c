@@ -49,7 +49,7 @@ static vxm_soup *make(kind k, int threads) {
   assert_int_equal(vxm_soup_create(&soup, context, "test", NULL), VXM_OK);
   assert_int_equal(vxm_appearance_create(&soup->appearance, soup->context, NULL), VXM_OK);
   vxm_context_destroy(context);
-  vxm_appearance *look = soup->appearance;
+  vxm_appearance *appearance = soup->appearance;
   uint32_t material[3], image[2];
   for (int t = 0; t < TRIANGLES; t++) {
     double middle[3] = {between(1, 8), between(1, 8), between(1, 8)};
@@ -59,22 +59,22 @@ static vxm_soup *make(kind k, int threads) {
     const uint32_t corners[3] = {3 * (uint32_t)t, 3 * (uint32_t)t + 1, 3 * (uint32_t)t + 2};
     vxm_soup_add_face(soup, corners, 3, NULL);
   }
-  look->is_product = k == PRODUCT;
-  look->vertices.unit = look->faces.unit = 255;
+  appearance->is_product = k == PRODUCT;
+  appearance->vertices.unit = appearance->faces.unit = 255;
   for (size_t v = 0; v < soup->vertex_count && (k == VERTICES || k == PRODUCT); v++)
     vxm_gather_color(
-        &look->vertices, soup->context, v,
+        &appearance->vertices, soup->context, v,
         (const double[4]){(double)(next() % 256), (double)(next() % 256), (double)(next() % 256), 0}, NULL);
   for (size_t f = 0; f < soup->face_count && k == FACES; f++)
     vxm_gather_color(
-        &look->faces, soup->context, f,
+        &appearance->faces, soup->context, f,
         (const double[4]){(double)(next() % 256), (double)(next() % 256), (double)(next() % 256), 0}, NULL);
-  assert_int_equal(vxm_appearance_settle(look, soup->vertex_count, soup->face_count, NULL), VXM_OK);
+  assert_int_equal(vxm_appearance_settle(appearance, soup->vertex_count, soup->face_count, NULL), VXM_OK);
   if (k < MATERIALS)
     return soup;
   for (int i = 0; i < 2; i++) {
-    vxm_appearance_image(look, i ? "second" : "first", i ? 6 : 5, &image[i], NULL);
-    vxm_image *made = &look->images[image[i]];
+    vxm_appearance_image(appearance, i ? "second" : "first", i ? 6 : 5, &image[i], NULL);
+    vxm_image *made = &appearance->images[image[i]];
     made->width = i ? 3 : 7;
     made->height = i ? 8 : 5;
     made->size = 4 * (uint64_t)made->width * made->height;
@@ -83,22 +83,22 @@ static vxm_soup *make(kind k, int threads) {
       made->bytes[b] = (unsigned char)next();
   }
   for (int m = 0; m < 3; m++) {
-    vxm_appearance_add_material(look, "m", 1, &material[m], NULL);
-    vxm_material *made = &look->materials[material[m]];
+    vxm_appearance_add_material(appearance, "m", 1, &material[m], NULL);
+    vxm_material *made = &appearance->materials[material[m]];
     made->has_color = true;
     for (int c = 0; c < 3; c++)
       made->color[c] = (float)between(0, 1);
-    made->image = k == MATERIALS || m == 2 ? VXM_NO_LOOK : image[m];
+    made->image = k == MATERIALS || m == 2 ? VXM_APPEARANCE_NONE : image[m];
     for (int a = 0; a < 2; a++)
       made->wrap[a] = (uint8_t)(next() % 3);
   }
-  look->corner_uvs = vxm_alloc(soup->context, soup->corner_count, sizeof *look->corner_uvs, NULL);
-  look->corner_uv_count = soup->corner_count;
+  appearance->corner_uvs = vxm_alloc(soup->context, soup->corner_count, sizeof *appearance->corner_uvs, NULL);
+  appearance->corner_uv_count = soup->corner_count;
   for (size_t c = 0; c < soup->corner_count; c++)
     for (int a = 0; a < 2; a++)
-      look->corner_uvs[c][a] = c == 4 ? NAN : (float)between(-0.7, 1.6);
+      appearance->corner_uvs[c][a] = c == 4 ? NAN : (float)between(-0.7, 1.6);
   for (size_t f = 0; f < soup->face_count; f++)
-    vxm_appearance_set_material(look, f, f == 0 ? VXM_NO_LOOK : material[next() % 3], NULL);
+    vxm_appearance_set_material(appearance, f, f == 0 ? VXM_APPEARANCE_NONE : material[next() % 3], NULL);
   return soup;
 }
 
@@ -139,32 +139,32 @@ static void texture(const vxm_image *image, const uint8_t how[2], double u, doub
 }
 
 static void color_at(const vxm_soup *soup, size_t f, const double weight[3], double rgb[3]) {
-  const vxm_appearance *look = soup->appearance;
+  const vxm_appearance *appearance = soup->appearance;
   double u = 0, v = 0, vertex[3] = {0, 0, 0}, picture[3];
   bool has_texture = false;
   for (int a = 0; a < 3; a++)
-    rgb[a] = look->face_colors ? light_of(look->face_colors[f][a]) : 1;
-  for (int c = 0; c < 3 && look->vertex_colors; c++)
+    rgb[a] = appearance->face_colors ? light_of(appearance->face_colors[f][a]) : 1;
+  for (int c = 0; c < 3 && appearance->vertex_colors; c++)
     for (int a = 0; a < 3; a++)
-      vertex[a] += weight[c] * light_of(look->vertex_colors[3 * f + (size_t)c][a]);
-  if (look->face_materials && look->face_materials[f] != VXM_NO_LOOK) {
-    const vxm_material *material = &look->materials[look->face_materials[f]];
+      vertex[a] += weight[c] * light_of(appearance->vertex_colors[3 * f + (size_t)c][a]);
+  if (appearance->face_materials && appearance->face_materials[f] != VXM_APPEARANCE_NONE) {
+    const vxm_material *material = &appearance->materials[appearance->face_materials[f]];
     for (int a = 0; a < 3; a++)
       rgb[a] = (double)material->color[a];
     for (int c = 0; c < 3; c++) {
-      u += weight[c] * (double)look->corner_uvs[3 * f + (size_t)c][0];
-      v += weight[c] * (double)look->corner_uvs[3 * f + (size_t)c][1];
+      u += weight[c] * (double)appearance->corner_uvs[3 * f + (size_t)c][0];
+      v += weight[c] * (double)appearance->corner_uvs[3 * f + (size_t)c][1];
     }
-    has_texture = material->image != VXM_NO_LOOK && isfinite(u) && isfinite(v);
+    has_texture = material->image != VXM_APPEARANCE_NONE && isfinite(u) && isfinite(v);
     if (has_texture)
-      texture(&look->images[material->image], material->wrap, u, v, picture);
+      texture(&appearance->images[material->image], material->wrap, u, v, picture);
   }
   for (int a = 0; a < 3; a++) {
-    if (look->is_product)
-      rgb[a] *= (has_texture ? picture[a] : 1) * (look->vertex_colors ? vertex[a] : 1);
+    if (appearance->is_product)
+      rgb[a] *= (has_texture ? picture[a] : 1) * (appearance->vertex_colors ? vertex[a] : 1);
     else if (has_texture)
       rgb[a] = picture[a];
-    else if (look->vertex_colors)
+    else if (appearance->vertex_colors)
       rgb[a] = vertex[a];
   }
 }
@@ -496,15 +496,16 @@ static void test_obj_corners(void **unused) {
       "mtllib none.mtl  other one.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 0 nan\n"
       "usemtl wood\nf 1/1/1 2/2 3\nf 1/7 2/-3 9\nusemtl steel\nf 1//4 2/-2 3/3\n";
   vxm_soup *soup = READ(text, "a.obj");
-  const vxm_appearance *look = soup->appearance;
+  const vxm_appearance *appearance = soup->appearance;
   assert_int_equal(soup->face_count, 2);
-  assert_int_equal(look->material_count, 2);
-  assert_int_equal(look->face_materials[0], 0);
-  assert_int_equal(look->face_materials[1], 1);
+  assert_int_equal(appearance->material_count, 2);
+  assert_int_equal(appearance->face_materials[0], 0);
+  assert_int_equal(appearance->face_materials[1], 1);
   static const float want[6][2] = {{0.25F, 0.5F}, {1, 0}, {NAN, NAN}, {NAN, NAN}, {1, 0}, {0, NAN}};
   for (int c = 0; c < 6; c++)
     for (int a = 0; a < 2; a++)
-      assert_true(isnan(want[c][a]) ? isnan(look->corner_uvs[c][a]) : look->corner_uvs[c][a] == want[c][a]);
+      assert_true(isnan(want[c][a]) ? isnan(appearance->corner_uvs[c][a])
+                                    : appearance->corner_uvs[c][a] == want[c][a]);
   assert_int_not_equal(vxm_mesh_colors_check(soup, NULL), VXM_OK);
   vxm_soup_destroy(soup);
 }

@@ -41,7 +41,7 @@ static vxm_status read_library(vxm_soup *soup, vxm_references *references, const
   int before = references->warnings.count;
   if (!open_reference(&input, soup, references, name, &status, error)) {
     if (!failure[0])
-      take_refusal(failure, VXM_LOOK_FAILURE, references, before);
+      take_refusal(failure, VXM_APPEARANCE_FAILURE, references, before);
     return status;
   }
   status = vxm_mtl_read(soup->appearance, input.data, input.size, name, error);
@@ -57,10 +57,10 @@ static size_t first_name(const char *line, size_t length) {
 
 /** Reads the files that the lines of `libraries` name. */
 static vxm_status read_libraries(vxm_soup *soup, vxm_references *references, vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
-  const char *at = look->libraries, *end = at + look->library_bytes;
+  vxm_appearance *appearance = soup->appearance;
+  const char *at = appearance->libraries, *end = at + appearance->library_bytes;
   vxm_status status = VXM_OK;
-  char name[VXM_LOOK_NAME];
+  char name[VXM_APPEARANCE_NAME];
   for (int n = 0; at < end && n < LIBRARIES_MAX && status == VXM_OK; n++) {
     const char *line_end = memchr(at, '\n', (size_t)(end - at));
     size_t length = first_name(at, (size_t)(line_end - at));
@@ -72,7 +72,7 @@ static vxm_status read_libraries(vxm_soup *soup, vxm_references *references, vxm
       status = read_library(soup, references, name, error);
     } else
       vxm_warn(&soup->warnings, "the name of a file of materials has more than %d bytes; passed over",
-               VXM_LOOK_NAME - 1);
+               VXM_APPEARANCE_NAME - 1);
     at += length;
     at += *at == ' ' ? strspn(at, " ") : 1;
   }
@@ -81,23 +81,23 @@ static vxm_status read_libraries(vxm_soup *soup, vxm_references *references, vxm
 
 /** Materials that no file describes: told together. */
 static void note_missing(vxm_soup *soup) {
-  const vxm_appearance *look = soup->appearance;
+  const vxm_appearance *appearance = soup->appearance;
   const char *first = NULL;
   size_t missing = 0;
-  for (size_t m = 0; m < look->material_count; m++)
-    if (!look->materials[m].has_color && look->materials[m].image == VXM_NO_LOOK) {
-      first = first ? first : look->materials[m].name;
+  for (size_t m = 0; m < appearance->material_count; m++)
+    if (!appearance->materials[m].has_color && appearance->materials[m].image == VXM_APPEARANCE_NONE) {
+      first = first ? first : appearance->materials[m].name;
       missing++;
     }
-  if (missing == 1 && look->library_bytes > 0)
+  if (missing == 1 && appearance->library_bytes > 0)
     vxm_warn(&soup->warnings,
              "the material \"%.100s\" has no colour: no .mtl file that could be read describes it", first);
-  else if (missing > 0 && look->library_bytes > 0)
+  else if (missing > 0 && appearance->library_bytes > 0)
     vxm_warn(
         &soup->warnings,
         "%zu of %zu materials have no colour, \"%.100s\" first: no .mtl file that could be read describes "
         "them",
-        missing, look->material_count, first);
+        missing, appearance->material_count, first);
 }
 
 /* ---- Pictures ---- */
@@ -141,7 +141,7 @@ static void drop_bytes(vxm_image *image, vxm_context *context, const char *failu
   vxm_free(context, image->bytes);
   image->bytes = NULL;
   image->size = 0;
-  snprintf(image->failure, sizeof image->failure, "%.*s", VXM_LOOK_FAILURE - 1, failure);
+  snprintf(image->failure, sizeof image->failure, "%.*s", VXM_APPEARANCE_FAILURE - 1, failure);
 }
 
 static vxm_status decode(vxm_image *image, vxm_soup *soup, vxm_error *error) {
@@ -171,16 +171,16 @@ static vxm_status decode(vxm_image *image, vxm_soup *soup, vxm_error *error) {
 }
 
 /** The first material that a picture is for. */
-static const char *user_of(const vxm_appearance *look, size_t image) {
-  for (size_t m = 0; m < look->material_count; m++)
-    if (look->materials[m].image == image)
-      return look->materials[m].name;
+static const char *user_of(const vxm_appearance *appearance, size_t image) {
+  for (size_t m = 0; m < appearance->material_count; m++)
+    if (appearance->materials[m].image == image)
+      return appearance->materials[m].name;
   return "";
 }
 
 static vxm_status read_image(vxm_soup *soup, size_t index, vxm_references *references, vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
-  vxm_image *image = &look->images[index];
+  vxm_appearance *appearance = soup->appearance;
+  vxm_image *image = &appearance->images[index];
   bool is_refused = false;
   vxm_status status = VXM_OK;
   if (!image->bytes && !image->failure[0]) {
@@ -191,20 +191,20 @@ static vxm_status read_image(vxm_soup *soup, size_t index, vxm_references *refer
     status = decode(image, soup, error);
   if (status == VXM_OK && image->failure[0] && !is_refused) /* a refusal has been told as such */
     vxm_warn(&soup->warnings, "the texture %.100s of material %.60s cannot be read: %.120s", image->name,
-             user_of(look, index), image->failure);
+             user_of(appearance, index), image->failure);
   return status;
 }
 
 vxm_status vxm_textures_read(vxm_soup *soup, vxm_references *references, vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
-  vxm_status status = vxm_appearance_settle(look, soup->vertex_count, soup->face_count, error);
+  vxm_appearance *appearance = soup->appearance;
+  vxm_status status = vxm_appearance_settle(appearance, soup->vertex_count, soup->face_count, error);
   const vxm_warnings refused_before = references->warnings;
   references->warnings.count = 0;
-  if (status == VXM_OK && look->library_bytes > 0) {
+  if (status == VXM_OK && appearance->library_bytes > 0) {
     status = read_libraries(soup, references, error);
     note_missing(soup);
   }
-  for (size_t i = 0; i < look->image_count && status == VXM_OK; i++)
+  for (size_t i = 0; i < appearance->image_count && status == VXM_OK; i++)
     status = read_image(soup, i, references, error);
   for (int n = 0; n < references->warnings.count; n++)
     vxm_warn(&soup->warnings, "%s", references->warnings.text[n]);

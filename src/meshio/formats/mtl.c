@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WORD_MAX = 64, PATH_ROOM = VXM_LOOK_NAME };
+enum { WORD_MAX = 64, PATH_ROOM = VXM_APPEARANCE_NAME };
 
 typedef struct mtl_reader {
-  vxm_appearance *look;
+  vxm_appearance *appearance;
   const char *at, *end; /**< of the line */
   const char *folder;   /**< of the file, with its slash */
   size_t folder_length;
@@ -61,11 +61,11 @@ static void begin_material(mtl_reader *reader) {
   size_t length = rest(reader);
   reader->material = NULL;
   uint32_t m;
-  if (!vxm_appearance_find_material(reader->look, (const char *)reader->at, length, &m) ||
+  if (!vxm_appearance_find_material(reader->appearance, (const char *)reader->at, length, &m) ||
       reader->is_described[m])
     return;
   reader->is_described[m] = true;
-  reader->material = &reader->look->materials[m];
+  reader->material = &reader->appearance->materials[m];
 }
 
 /** Kd r g b, of which the latter two may be left out; other forms (spectral, xyz) give no colour. */
@@ -130,7 +130,7 @@ static vxm_status read_map(mtl_reader *reader, vxm_error *error) {
   memcpy(path + folder, reader->at, length);
   for (size_t i = 0; i < folder + length; i++)
     path[i] = path[i] == '\\' ? '/' : path[i];
-  return vxm_appearance_image(reader->look, path, folder + length, &reader->material->image, error);
+  return vxm_appearance_image(reader->appearance, path, folder + length, &reader->material->image, error);
 }
 
 static vxm_status read_line(mtl_reader *reader, vxm_error *error) {
@@ -145,12 +145,13 @@ static vxm_status read_line(mtl_reader *reader, vxm_error *error) {
   return VXM_OK;
 }
 
-vxm_status vxm_mtl_read(vxm_appearance *look, const unsigned char *data, size_t size, const char *name,
+vxm_status vxm_mtl_read(vxm_appearance *appearance, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error) {
   const char *slash = strrchr(name, '/'), *at = (const char *)data, *const end = at + size;
   vxm_error local = VXM_ERROR_INIT;
-  bool *is_described = vxm_calloc(look->context, look->material_count + 1, sizeof *is_described, &local);
-  mtl_reader reader = {.look = look,
+  bool *is_described =
+      vxm_calloc(appearance->context, appearance->material_count + 1, sizeof *is_described, &local);
+  mtl_reader reader = {.appearance = appearance,
                        .folder = name,
                        .folder_length = slash ? (size_t)(slash + 1 - name) : 0,
                        .is_described = is_described,
@@ -158,8 +159,9 @@ vxm_status vxm_mtl_read(vxm_appearance *look, const unsigned char *data, size_t 
   vxm_status status = is_described ? VXM_OK : local.code;
   if (status == VXM_OK && !reader.c_locale)
     status = vxm_fail(&local, VXM_ERROR_MEMORY, "not enough memory to read the materials");
-  for (size_t m = 0; is_described && m < look->material_count; m++)
-    is_described[m] = look->materials[m].has_color || look->materials[m].image != VXM_NO_LOOK;
+  for (size_t m = 0; is_described && m < appearance->material_count; m++)
+    is_described[m] =
+        appearance->materials[m].has_color || appearance->materials[m].image != VXM_APPEARANCE_NONE;
   while (at < end && status == VXM_OK) {
     reader.at = at;
     while (at < end && *at != '\n')
@@ -170,7 +172,7 @@ vxm_status vxm_mtl_read(vxm_appearance *look, const unsigned char *data, size_t 
   }
   if (reader.c_locale)
     freelocale(reader.c_locale);
-  vxm_free(look->context, is_described);
+  vxm_free(appearance->context, is_described);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
   return status;

@@ -11,7 +11,7 @@
  *
  * @param name of the file, as the mesh says it: images lie where it does
  */
-vxm_status vxm_mtl_read(vxm_appearance *look, const unsigned char *data, size_t size, const char *name,
+vxm_status vxm_mtl_read(vxm_appearance *appearance, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error);
 
 #endif

@@ -91,33 +91,34 @@ vxm_status vxm_obj_colors_material(vxm_obj_colors *colors, vxm_soup *soup, const
 
 vxm_status vxm_obj_colors_library(vxm_soup *soup, const unsigned char *names, size_t length,
                                   vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
+  vxm_appearance *appearance = soup->appearance;
   cut_blanks(&names, &length);
-  vxm_status status = vxm_grow(soup->context, (void **)&look->libraries, &look->library_capacity,
-                               look->library_bytes + length + 1, 1, error);
+  vxm_status status = vxm_grow(soup->context, (void **)&appearance->libraries, &appearance->library_capacity,
+                               appearance->library_bytes + length + 1, 1, error);
   if (status != VXM_OK || length == 0)
     return status;
-  memcpy(look->libraries + look->library_bytes, names, length);
-  look->libraries[look->library_bytes + length] = '\n';
-  look->library_bytes += length + 1;
+  memcpy(appearance->libraries + appearance->library_bytes, names, length);
+  appearance->libraries[appearance->library_bytes + length] = '\n';
+  appearance->library_bytes += length + 1;
   return VXM_OK;
 }
 
 vxm_status vxm_obj_colors_finish(vxm_obj_colors *colors, vxm_soup *soup, vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
+  vxm_appearance *appearance = soup->appearance;
   vxm_error local = VXM_ERROR_INIT;
   if (colors->uv_count == 0 || soup->corner_count == 0)
     return VXM_OK;
-  look->corner_uvs = vxm_alloc(soup->context, soup->corner_count, sizeof *look->corner_uvs, &local);
-  if (!look->corner_uvs) {
+  appearance->corner_uvs =
+      vxm_alloc(soup->context, soup->corner_count, sizeof *appearance->corner_uvs, &local);
+  if (!appearance->corner_uvs) {
     vxm_error_pass(error, &local);
     return local.code;
   }
-  look->corner_uv_count = soup->corner_count;
+  appearance->corner_uv_count = soup->corner_count;
   for (size_t c = 0; c < soup->corner_count; c++) {
     uint32_t index = colors->corner_uvs[c];
     for (int a = 0; a < 2; a++)
-      look->corner_uvs[c][a] = index < colors->uv_count ? colors->uvs[index][a] : NAN;
+      appearance->corner_uvs[c][a] = index < colors->uv_count ? colors->uvs[index][a] : NAN;
   }
   return VXM_OK;
 }

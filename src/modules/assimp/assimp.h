@@ -24,7 +24,7 @@ void vxm_assimp_files_init(vxm_assimp_files *files, const vxm_reader_request *re
 /* For a soup that is to have an appearance. */
 
 /** Takes all materials, in their order, and the pictures within the file. */
-vxm_status vxm_assimp_materials(vxm_appearance *look, const struct aiScene *scene, vxm_error *error);
+vxm_status vxm_assimp_materials(vxm_appearance *appearance, const struct aiScene *scene, vxm_error *error);
 /** Takes the colours of the vertices that are about to be added. */
 vxm_status vxm_assimp_vertex_colors(vxm_soup *soup, const struct aiMesh *mesh, vxm_error *error);
 /** Takes material and texture coordinates of the soup's last face, of a mesh that begins at vertex `first`.

@@ -58,21 +58,21 @@ static void decode_name(char *name) {
   vxm_uri_decode(name);
 }
 
-static vxm_status take_texture(vxm_appearance *look, const struct aiScene *scene, const char *path,
+static vxm_status take_texture(vxm_appearance *appearance, const struct aiScene *scene, const char *path,
                                uint32_t *image, vxm_error *error) {
-  char name[VXM_LOOK_NAME];
+  char name[VXM_APPEARANCE_NAME];
   const struct aiTexture *texture = find_embedded(scene, path);
   if (texture && path[0] == '*')
     snprintf(name, sizeof name, "embedded %.20s", path + 1);
   else
-    snprintf(name, sizeof name, "%.*s", VXM_LOOK_NAME - 1, path);
+    snprintf(name, sizeof name, "%.*s", VXM_APPEARANCE_NAME - 1, path);
   if (!texture)
     decode_name(name);
-  size_t known = look->image_count;
-  vxm_status status = vxm_appearance_image(look, name, strlen(name), image, error);
-  bool is_new = look->image_count > known;
+  size_t known = appearance->image_count;
+  vxm_status status = vxm_appearance_image(appearance, name, strlen(name), image, error);
+  bool is_new = appearance->image_count > known;
   return status == VXM_OK && is_new && texture
-             ? take_embedded(&look->images[*image], look->context, texture, error)
+             ? take_embedded(&appearance->images[*image], appearance->context, texture, error)
              : status;
 }
 
@@ -84,26 +84,27 @@ static uint8_t wrap_of(enum aiTextureMapMode mode) {
                                                                             : VXM_WRAP_REPEAT;
 }
 
-static vxm_status take_material(vxm_appearance *look, const struct aiScene *scene,
+static vxm_status take_material(vxm_appearance *appearance, const struct aiScene *scene,
                                 const struct aiMaterial *from, vxm_error *error) {
   struct aiString name = {.length = 0}, path = {.length = 0};
   uint32_t index, image;
   aiGetMaterialString(from, AI_MATKEY_NAME, &name);
   bool is_made_up = strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0; /* where the file has none */
   vxm_status status =
-      vxm_appearance_add_material(look, name.data, is_made_up ? 0 : strlen(name.data), &index, error);
+      vxm_appearance_add_material(appearance, name.data, is_made_up ? 0 : strlen(name.data), &index, error);
   if (status != VXM_OK || is_made_up)
     return status;
-  vxm_material *material = &look->materials[index];
+  vxm_material *material = &appearance->materials[index];
   struct aiColor4D color;
   /* Assimp gives the base colour of glTF under this name too. */
   if (aiGetMaterialColor(from, AI_MATKEY_COLOR_DIFFUSE, &color) == aiReturn_SUCCESS) {
     const double rgb[3] = {(double)color.r, (double)color.g, (double)color.b};
     /* White without a name is what Assimp gives to glTF without materials. */
-    material->has_color = name.length > 0 || !look->is_product || rgb[0] < 1 || rgb[1] < 1 || rgb[2] < 1;
+    material->has_color =
+        name.length > 0 || !appearance->is_product || rgb[0] < 1 || rgb[1] < 1 || rgb[2] < 1;
     for (int c = 0; c < 3; c++) {
       double value = rgb[c] > 0 ? rgb[c] < 1 ? rgb[c] : 1 : 0;
-      material->color[c] = (float)(look->is_product ? value : vxm_srgb_decode(value));
+      material->color[c] = (float)(appearance->is_product ? value : vxm_srgb_decode(value));
     }
   }
   enum aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
@@ -111,21 +112,21 @@ static vxm_status take_material(vxm_appearance *look, const struct aiScene *scen
           aiReturn_SUCCESS ||
       path.data[0] == '\0')
     return VXM_OK;
-  status = take_texture(look, scene, path.data, &image, error);
+  status = take_texture(appearance, scene, path.data, &image, error);
   material->image = image;
   for (int a = 0; a < 2; a++)
     material->wrap[a] = wrap_of(modes[a]);
   return status;
 }
 
-vxm_status vxm_assimp_materials(vxm_appearance *look, const struct aiScene *scene, vxm_error *error) {
+vxm_status vxm_assimp_materials(vxm_appearance *appearance, const struct aiScene *scene, vxm_error *error) {
   vxm_status status = VXM_OK;
   for (unsigned m = 0; m < scene->mNumMaterials && status == VXM_OK; m++) {
     uint32_t index;
     if (scene->mMaterials[m])
-      status = take_material(look, scene, scene->mMaterials[m], error);
+      status = take_material(appearance, scene, scene->mMaterials[m], error);
     else
-      status = vxm_appearance_add_material(look, "", 0, &index, error);
+      status = vxm_appearance_add_material(appearance, "", 0, &index, error);
   }
   return status;
 }
@@ -133,38 +134,38 @@ vxm_status vxm_assimp_materials(vxm_appearance *look, const struct aiScene *scen
 /* ---- Vertices and faces ---- */
 
 vxm_status vxm_assimp_vertex_colors(vxm_soup *soup, const struct aiMesh *mesh, vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
+  vxm_appearance *appearance = soup->appearance;
   vxm_status status = VXM_OK;
   if (!mesh->mColors[0])
     return VXM_OK;
-  look->vertices.unit = 1;
+  appearance->vertices.unit = 1;
   for (unsigned v = 0; v < mesh->mNumVertices && status == VXM_OK; v++) {
     const struct aiColor4D *color = &mesh->mColors[0][v];
     double rgba[4] = {(double)color->r, (double)color->g, (double)color->b, 0};
     /* The colours of glTF are light itself. */
-    for (int c = 0; c < 3 && look->is_product; c++)
+    for (int c = 0; c < 3 && appearance->is_product; c++)
       rgba[c] = (double)vxm_srgb_encode(rgba[c]) / 255;
-    status = vxm_gather_color(&look->vertices, soup->context, soup->vertex_count + v, rgba, error);
+    status = vxm_gather_color(&appearance->vertices, soup->context, soup->vertex_count + v, rgba, error);
   }
   return status;
 }
 
 vxm_status vxm_assimp_face_look(vxm_soup *soup, size_t *capacity, const struct aiMesh *mesh, uint32_t first,
                                 vxm_error *error) {
-  vxm_appearance *look = soup->appearance;
+  vxm_appearance *appearance = soup->appearance;
   size_t face = soup->face_count - 1;
   vxm_status status = VXM_OK;
-  if (mesh->mMaterialIndex < look->material_count)
-    status = vxm_appearance_set_material(look, face, mesh->mMaterialIndex, error);
+  if (mesh->mMaterialIndex < appearance->material_count)
+    status = vxm_appearance_set_material(appearance, face, mesh->mMaterialIndex, error);
   if (status == VXM_OK)
-    status = vxm_grow(soup->context, (void **)&look->corner_uvs, capacity, soup->corner_count,
-                      sizeof *look->corner_uvs, error);
+    status = vxm_grow(soup->context, (void **)&appearance->corner_uvs, capacity, soup->corner_count,
+                      sizeof *appearance->corner_uvs, error);
   for (size_t c = (size_t)soup->offsets[face]; c < soup->corner_count && status == VXM_OK; c++) {
     const struct aiVector3D *uvs = mesh->mTextureCoords[0];
     uint32_t v = soup->indices[c] - first;
-    look->corner_uvs[c][0] = uvs ? (float)uvs[v].x : NAN;
-    look->corner_uvs[c][1] = uvs ? (float)uvs[v].y : NAN;
-    look->corner_uv_count = c + 1;
+    appearance->corner_uvs[c][0] = uvs ? (float)uvs[v].x : NAN;
+    appearance->corner_uvs[c][1] = uvs ? (float)uvs[v].y : NAN;
+    appearance->corner_uv_count = c + 1;
   }
   return status;
 }

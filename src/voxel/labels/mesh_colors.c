@@ -8,30 +8,30 @@
 #include <string.h>
 
 vxm_status vxm_mesh_colors_check(const vxm_soup *mesh, vxm_error *error) {
-  const vxm_appearance *look = mesh->appearance;
-  if (!look)
+  const vxm_appearance *appearance = mesh->appearance;
+  if (!appearance)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "colours: the mesh was read without its colours, or is the result of a repair");
-  if (vxm_appearance_has_colors(look))
+  if (vxm_appearance_has_colors(appearance))
     return VXM_OK;
-  for (size_t m = 0; m < look->material_count && look->face_materials; m++) {
-    const vxm_material *material = &look->materials[m];
-    if (material->image < look->image_count && look->images[material->image].failure[0])
+  for (size_t m = 0; m < appearance->material_count && appearance->face_materials; m++) {
+    const vxm_material *material = &appearance->materials[m];
+    if (material->image < appearance->image_count && appearance->images[material->image].failure[0])
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
                       "the mesh has no colours: the texture %.80s of material %.40s cannot be read: %.199s",
-                      look->images[material->image].name, material->name,
-                      look->images[material->image].failure);
-    if (material->image < look->image_count && !look->corner_uvs)
+                      appearance->images[material->image].name, material->name,
+                      appearance->images[material->image].failure);
+    if (material->image < appearance->image_count && !appearance->corner_uvs)
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
                       "the mesh has no colours: its corners have no coordinates for the texture %.80s",
-                      look->images[material->image].name);
+                      appearance->images[material->image].name);
   }
-  if (look->library_failure[0])
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "the mesh has no colours: %s", look->library_failure);
-  if (look->material_count > 0)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "the mesh has no colours: nothing is known of its material%s%.100s",
-                    look->materials[0].name[0] ? " " : ", which has no name", look->materials[0].name);
+  if (appearance->library_failure[0])
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "the mesh has no colours: %s", appearance->library_failure);
+  if (appearance->material_count > 0)
+    return vxm_fail(
+        error, VXM_ERROR_ARGUMENT, "the mesh has no colours: nothing is known of its material%s%.100s",
+        appearance->materials[0].name[0] ? " " : ", which has no name", appearance->materials[0].name);
   return vxm_fail(error, VXM_ERROR_ARGUMENT,
                   "the mesh has no colours: neither its vertices and faces nor materials give any");
 }

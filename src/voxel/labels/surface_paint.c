@@ -149,16 +149,17 @@ static void sample(const vxm_surface_paint *paint, const vxm_image *image, const
 }
 
 static const vxm_material *material_of(const vxm_surface_paint *paint, size_t face) {
-  const vxm_appearance *look = paint->soup->appearance;
-  bool has = face < look->face_material_count && look->face_materials[face] < look->material_count;
-  return has ? &look->materials[look->face_materials[face]] : NULL;
+  const vxm_appearance *appearance = paint->soup->appearance;
+  bool has =
+      face < appearance->face_material_count && appearance->face_materials[face] < appearance->material_count;
+  return has ? &appearance->materials[appearance->face_materials[face]] : NULL;
 }
 
 static const vxm_image *image_of(const vxm_surface_paint *paint, const vxm_material *material) {
-  const vxm_appearance *look = paint->soup->appearance;
-  if (!material || material->image >= look->image_count || !look->corner_uvs)
+  const vxm_appearance *appearance = paint->soup->appearance;
+  if (!material || material->image >= appearance->image_count || !appearance->corner_uvs)
     return NULL;
-  const vxm_image *image = &look->images[material->image];
+  const vxm_image *image = &appearance->images[material->image];
   return image->width > 0 ? image : NULL;
 }
 
@@ -203,24 +204,24 @@ double vxm_surface_paint_pixels(const vxm_surface_paint *paint, size_t triangle,
 static bool find_vertex_color(const vxm_surface_paint *paint, const vxm_painted_triangle *triangle,
                               const double weight[3], double rgb[3]) {
   const vxm_soup *soup = paint->soup;
-  const vxm_appearance *look = soup->appearance;
+  const vxm_appearance *appearance = soup->appearance;
   rgb[0] = rgb[1] = rgb[2] = 0;
   for (int c = 0; c < 3; c++) {
     uint32_t vertex = soup->indices[corner_of(paint, triangle, c)];
-    if (vertex >= look->vertex_color_count || look->vertex_colors[vertex][3] == 0)
+    if (vertex >= appearance->vertex_color_count || appearance->vertex_colors[vertex][3] == 0)
       return false;
     for (int a = 0; a < 3; a++)
-      rgb[a] += weight[c] * (double)paint->light[look->vertex_colors[vertex][a]];
+      rgb[a] += weight[c] * (double)paint->light[appearance->vertex_colors[vertex][a]];
   }
   return true;
 }
 
 static bool find_face_color(const vxm_surface_paint *paint, size_t face, double rgb[3]) {
-  const vxm_appearance *look = paint->soup->appearance;
-  if (face >= look->face_color_count || look->face_colors[face][3] == 0)
+  const vxm_appearance *appearance = paint->soup->appearance;
+  if (face >= appearance->face_color_count || appearance->face_colors[face][3] == 0)
     return false;
   for (int a = 0; a < 3; a++)
-    rgb[a] = (double)paint->light[look->face_colors[face][a]];
+    rgb[a] = (double)paint->light[appearance->face_colors[face][a]];
   return true;
 }
 
