@@ -115,7 +115,8 @@ static bool has_content(const batch_item *item, const batch_content *known) {
          batch_content_read(&now, digest) && memcmp(&now, known, sizeof now) == 0;
 }
 
-/** A file that has changed and may not: of a status that the batch keeps, or that others may be at. */
+/** Files that have changed although they must not: their items have a status that the batch keeps, or other
+ * processes may be working on them. */
 typedef struct refusal {
   int64_t count;
   const batch_item *first;

@@ -52,7 +52,7 @@ static void set_message(json_t *record, const char *text) {
   json_object_set_new(record, "message", batch_json_string(text));
 }
 
-/** A child that did not end as it should: what to call that. */
+/** The status, and message, of a child that did not end as it should. */
 static batch_status judge(json_t *record, const batch_ending *ending, const batch_settings *settings) {
   char text[256];
   int status = ending->wait_status;

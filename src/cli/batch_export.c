@@ -14,7 +14,7 @@
 
 extern char **environ;
 
-/** Says in one line that the package, or what it needs, is not there, rather than where that was noticed. */
+/** Where the package, or what it needs, is missing, one line says so in place of a traceback. */
 static const char program[] =
     "import sys\n"
     "try:\n"

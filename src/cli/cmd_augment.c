@@ -22,8 +22,8 @@ static bool add_number(double **numbers, size_t *count, size_t *room, double val
   return true;
 }
 
-/** Passes over the mark that spreadsheets put before UTF-8. @return 0 for what begins as that does, but is
- * not it; else 1 */
+/** Passes over a byte order mark, which spreadsheets write before UTF-8. @return 0 for a file that begins
+ * like one but has another byte in it, else 1 */
 static int pass_mark(FILE *file) {
   int c = getc(file);
   if (c == 0xef)

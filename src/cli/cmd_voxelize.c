@@ -150,7 +150,7 @@ static uint64_t bytes_of_bits(const vxm_space *space) {
   return (uint64_t)(space->dims[0] + 63) / 64 * 8 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
 }
 
-/** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
+/** Makes the model, tells the memory it will take, and, unless only that is wanted, writes the grid. */
 static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
   const vxm_mesh *mesh = results->input.mesh;
   vxm_grid_write_options options = write_options(given);

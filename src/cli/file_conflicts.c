@@ -142,7 +142,8 @@ static bool is_part_of_gltf(const char *path, const char *output, int standard) 
   return found;
 }
 
-/** Whether an output is a file without which one that is read is not what it was. */
+/** Whether writing an output would overwrite a file that belongs to an input: a part of a glTF, an .mtl, the
+ * .json beside a grid. */
 static bool is_companion(const char *input, const char *output, int standard) {
   char name[PATH_SIZE];
   struct stat info;
@@ -168,7 +169,7 @@ void cli_writes(cli_run *cli, const char *option, const char *path, bool has_jso
     cli->writes[cli->write_count++] = (cli_written){option, path, has_json};
 }
 
-/** CLI_STOP if what is written, under a name that may be that of the .json beside it, is read. */
+/** CLI_STOP if `path`, the output or the .json beside it, is an input or belongs to one. */
 static int check_input(cli_run *cli, const cli_written *output, const char *path, const char *input) {
   if (is_same(path, STDOUT_FILENO, input, STDIN_FILENO))
     return cli_usage(cli, "%s would overwrite %s, which is read", output->option,

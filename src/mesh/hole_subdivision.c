@@ -90,7 +90,8 @@ static vxm_status cut_and_fill(cutting *c, bool *filled, vxm_error *error) {
   return VXM_OK;
 }
 
-/** A cut leaves at least an eighth on either side, so that the parts that wait get shorter by that each. */
+/** Parts that wait at most: a cut leaves at least an eighth on either side, so that each is at most seven
+ * eighths of what it was cut from. */
 enum { DEPTH_MAX = 256 };
 
 static vxm_status fill_by_cuts(uint32_t (*triangles)[3], bool *filled, const vxm_rim *rim, vxm_error *error) {

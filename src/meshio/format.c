@@ -241,8 +241,8 @@ static bool is_zarr(const char *path) {
   return found;
 }
 
-/** Opens a mesh file within its folder, so that both belong together whoever renames what meanwhile; what is
- * not in it (a link that leads elsewhere, a pipe, standard input) has no folder. */
+/** Opens a mesh file within its folder, so that the two belong together even if either is renamed meanwhile.
+ * What does not lie in a folder (a link that leads elsewhere, a pipe, standard input) has none. */
 static vxm_status open_file(vxm_input *input, vxm_references *references, vxm_context *context,
                             const char *path, vxm_error *error) {
   const char *slash = strrchr(path, '/');

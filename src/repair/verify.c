@@ -133,8 +133,7 @@ static void add_face(verifying *v, const char *what, int64_t count, size_t first
   add(v, what, count, (int64_t)first, vxm_position(v->state.soup, corner[0]));
 }
 
-/** Faces that look into the solid: what is outward and what bounds a cavity follows from where the parts lie.
- */
+/** Finds faces that look into the solid. How the parts lie in each other tells which bound a cavity. */
 static vxm_status verify_outward(verifying *v, vxm_error *error) {
   const vxm_soup *soup = v->state.soup;
   const vxm_cgal *cgal;
@@ -164,8 +163,9 @@ static vxm_status verify_solid(verifying *v, vxm_error *error) {
 
 /* ---- Other programs ---- */
 
-/** Vertices that lie apart and are one to a program that merges near ones: what it reads would be another
- * mesh. */
+/** Finds vertices that are apart, but so near that a program which merges near vertices would read another
+ * mesh.
+ */
 static vxm_status verify_apart(verifying *v, const vxm_soup *soup, vxm_error *error) {
   vxm_extent extent;
   vxm_status status = VXM_OK;
@@ -196,7 +196,9 @@ static vxm_status verify_apart(verifying *v, const vxm_soup *soup, vxm_error *er
   return status;
 }
 
-/** A copy that a program makes which welds: positions that are the same are one vertex, the first one. */
+/** Copies the soup as a program that welds would read it: vertices of the same position are the first of
+ * them.
+ */
 static vxm_status weld(verifying *v, const vxm_soup *soup, vxm_error *error) {
   vxm_status status = vxm_soup_copy(&v->state.soup, soup, error);
   if (status != VXM_OK)

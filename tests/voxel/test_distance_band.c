@@ -245,7 +245,7 @@ static void test_values(void **state) {
                            2.5,
                            0.3};
     for (size_t b = 0; b < build_count; b++) {
-      vxm_band_tally tally = {.least = INFINITY, .greatest = -INFINITY}, right = tally;
+      vxm_band_tally tally = {.min = INFINITY, .max = -INFINITY}, right = tally;
       if (is_fill)
         builds[b]->fill(&out, count, &tally);
       else
@@ -260,12 +260,12 @@ static void test_values(void **state) {
             assert_true(values[row * 200 + x] == value);
             right.exact += sqrt(square) < 2.5;
             right.inside += is_inside;
-            right.least = fminf(right.least, value);
-            right.greatest = fmaxf(right.greatest, value);
+            right.min = fminf(right.min, value);
+            right.max = fmaxf(right.max, value);
           }
       assert_int_equal(tally.exact, right.exact);
       assert_int_equal(tally.inside, right.inside);
-      assert_true(tally.least == right.least && tally.greatest == right.greatest);
+      assert_true(tally.min == right.min && tally.max == right.max);
     }
   }
 }

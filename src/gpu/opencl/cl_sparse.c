@@ -22,8 +22,8 @@ typedef struct making {
 
 /* ---- What is left to the CPU ---- */
 
-/** Whether parity along x tells what is inside of all parts, so that it is the same for all columns of what
- * has no node. */
+/** Whether all parts are closed, so that parity along x tells what is inside, and is the same for all columns
+ * between nodes. */
 static bool are_closed(const vxm_sparse_job *job) {
   const vxm_split *split = &job->triangles->split;
   return job->part_end <= split->kind_end[job->roles & VXM_ROLE_CAP ? VXM_PART_CAPPED : VXM_PART_CLOSED];

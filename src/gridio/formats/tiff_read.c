@@ -184,7 +184,7 @@ static vxm_status count_pages(stack *s, vxm_error *error) {
 
 /* ---- What the description says ---- */
 
-/** The number behind a word at the begin of a line, or `otherwise`. */
+/** The number behind a word at the beginning of a line, or `otherwise`. */
 static double text_number(const stack *s, const char *word, double otherwise) {
   size_t length = strlen(word);
   for (const char *line = s->text; line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL)

@@ -52,8 +52,7 @@ static void mark(vxm_tiles *tiles, const vxm_scene *scene, const vxm_camera *cam
     }
 }
 
-/** The finest level of which there are not many more cells than tiles, so that this takes less time than what
- * it saves. */
+/** The finest level whose number of cells is bounded: to go through them takes less time than it saves. */
 static int choose_level(const vxm_occupancy_mips *mips) {
   const int64_t most = 1 << 19;
   int level = 0;

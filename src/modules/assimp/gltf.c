@@ -30,7 +30,7 @@ static bool is_glb(const vxm_reader_request *request) {
   return request->size >= 4 && memcmp(request->data, "glTF", 4) == 0;
 }
 
-/** The size is what the parts take that are told of, or what the header says. */
+/** Fails for a file that is shorter than the parts it announces, of `size` bytes, or than its header says. */
 static vxm_status fail_cut(const vxm_reader_request *request, uint64_t size, vxm_error *error) {
   if (request->size >= HEADER && vxm_load_le32(request->data + 8) > size)
     size = vxm_load_le32(request->data + 8);

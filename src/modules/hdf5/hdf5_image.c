@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A driver by which HDF5 reads a file that is in memory. Its own for that looks whether there is one on the
- * disk. */
+/** A driver by which HDF5 reads a file that is in memory. HDF5's own for that (core) also looks for the file
+ * on the disk. */
 #include "config.h"
 
 #include "modules/hdf5/hdf5.h"

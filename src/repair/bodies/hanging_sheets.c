@@ -216,10 +216,10 @@ static bool is_cut(cutting *c, size_t face) {
 }
 
 /**
- * Leaves the sheets that hang where they are unless that matters: where the faces that edges connect are
- * closed without them, or where all are a sheet for the voxelizer with them. Other bodies are closed over
- * their rims with them as without, and what seems to hang on a shell full of holes may be a part of it.
- * *any: some are to be cut off.
+ * Chooses which of the hanging sheets are cut off: those without which the faces that edges connect are
+ * closed, and those with which all of these would be a sheet for the voxelizer. The others stay: holes of
+ * other bodies are capped with them as without, and what seems to hang on a shell full of holes may be a part
+ * of it. *any: some are to be cut off.
  */
 static bool choose(cutting *c, bool *any) {
   count_sheets(c, true);

@@ -221,7 +221,8 @@ static bool stays(const deciding *d, size_t face) {
   return c->rank < d->keep[2 * c->first + c->turned];
 }
 
-/** The faces that tell what is inside: of groups that are not balanced the plain ones alone. */
+/** Whether a face is one of those that tell inside from outside; in groups that are not balanced only faces
+ * that repeat no other are. */
 static bool bounds(const deciding *d, size_t face) {
   kind k = (kind)d->kinds[d->copies[face].first];
   bool balanced = d->groups.groups[d->groups.of_face[face]].balanced;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Takes a soup to what will be written, so that everything else sees that: triangles, and for .stl between
- * positions of 32-bit floats.
+ * Makes a soup what the file will hold, so that all other passes work on that: triangles, and for .stl
+ * positions that 32-bit floats hold.
  */
 #include "repair/state/split.h"
 

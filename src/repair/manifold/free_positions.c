@@ -40,7 +40,8 @@ static fit fits(vxm_free_positions *near, uint32_t vertex, const vxm_position_mo
 
 /* ---- In the direction ---- */
 
-/** Exactly in that direction, by what one axis takes: anything else might meet what is on the other side. */
+/** Moves exactly along the direction, at first by the least step that changes a coordinate: a position
+ * beside it might meet what lies on the other side. */
 static bool find_straight(vxm_free_positions *near, uint32_t vertex, const vxm_position_move *by,
                           double p[3]) {
   double step = INFINITY;

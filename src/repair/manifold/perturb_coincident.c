@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Vertices at the same position that belong to different patches would be one again for every program that
- * welds, and so would those that lie nearer than it tells apart; the edges between them have too many faces
- * again. So each is moved a little: toward the faces of its own, or along an edge that is too short. Then the
- * same for those that differ, but are one once they are 32-bit floats, as many programs hold them, where the
- * faces leave room for that.
+ * Moves vertices of different patches that have the same position, or lie closer together than other programs
+ * tell apart. A program that welds would make one vertex of them, and edges with too many faces would be
+ * back. Each is moved a little: toward its own faces, or along an edge that is too short. The same is then
+ * done for vertices that would coincide as 32-bit floats, in which many programs hold them, where the faces
+ * allow it.
  */
 #include "mesh/geometry.h"
 #include "repair/manifold/contact_direction.h"
@@ -18,7 +18,8 @@
 static const double STEP = 2.5e-7;
 /** Of the least height of the faces about a vertex, so that volumes stay; units may be more. */
 static const double STEP_HEIGHT = 1e-6;
-/** Of that height: what a unit may be that is a precaution, so that no face is turned over. */
+/** Of that height: a step that only keeps 32-bit floats apart is no longer, so that no face is turned over.
+ */
 static const double ROOM = 1.0 / 8;
 /** In units of VXM_MERGE_GRID: enough for a difference after rounding and after a small turn of the model. */
 static const double STEP_GRID = 5;

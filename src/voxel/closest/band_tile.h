@@ -85,11 +85,17 @@ typedef struct vxm_band_values {
   double band, side;
 } vxm_band_values;
 
-/** What has been seen of values. */
+/** Of values: how many were measured, how many lie inside, and their range. */
 typedef struct vxm_band_tally {
   _Alignas(64) int64_t exact, inside;
-  float least, greatest;
+  float min, max;
 } vxm_band_tally;
+
+/** Counts a value in the range. */
+static inline void vxm_band_tally_add(vxm_band_tally *tally, float value) {
+  tally->min = value < tally->min ? value : tally->min;
+  tally->max = value > tally->max ? value : tally->max;
+}
 
 typedef struct vxm_band_kernels {
   /** Keys of the triangles begin..end-1: where they lie, from bit VXM_BAND_PLACE_SHIFT on, and which they

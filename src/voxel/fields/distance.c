@@ -63,9 +63,9 @@ static void fill_row(const measure *m, float *values, uint64_t inside, int count
   for (uint64_t bits = inside; bits; bits &= bits - 1)
     values[__builtin_ctzll(bits)] = -most;
   if (inside)
-    vxm_band_see(t, -most);
+    vxm_band_tally_add(t, -most);
   if (inside != vxm_low_bits((unsigned)count))
-    vxm_band_see(t, most);
+    vxm_band_tally_add(t, most);
 }
 
 static vxm_point_block tile_of(const measure *m, size_t task) {
@@ -183,8 +183,8 @@ static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
   *report = (vxm_distance_report){.voxelize = report->voxelize, .min = INFINITY, .max = -INFINITY};
   for (int w = 0; w < workers; w++) {
     report->exact += m->tallies[w].exact;
-    report->min = fmin(report->min, (double)m->tallies[w].least);
-    report->max = fmax(report->max, (double)m->tallies[w].greatest);
+    report->min = fmin(report->min, (double)m->tallies[w].min);
+    report->max = fmax(report->max, (double)m->tallies[w].max);
     inside += m->tallies[w].inside;
   }
   if (m->is_signed)
@@ -201,7 +201,7 @@ static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
   }
   m->tallies = vxm_calloc(context, (size_t)workers, sizeof *m->tallies, &local);
   for (int w = 0; w < workers && local.code == VXM_OK; w++) {
-    m->tallies[w] = (tally){.least = INFINITY, .greatest = -INFINITY};
+    m->tallies[w] = (tally){.min = INFINITY, .max = -INFINITY};
     if (m->search.tree)
       vxm_search_create(&m->searches[w], m->search.tree, &local);
   }

@@ -133,7 +133,7 @@ static vxm_status make_scratches(vxm_distance_nodes *n, vxm_error *error) {
   n->scratches = vxm_calloc(n->context, (size_t)n->workers, sizeof *n->scratches, &local);
   for (int w = 0; w < n->workers && local.code == VXM_OK; w++) {
     scratch *d = &n->scratches[w];
-    d->tally = (vxm_band_tally){.least = INFINITY, .greatest = -INFINITY};
+    d->tally = (vxm_band_tally){.min = INFINITY, .max = -INFINITY};
     if (n->search.clusters) {
       d->tile = vxm_alloc(n->context, 1, sizeof *d->tile, &local);
       d->near = vxm_alloc(n->context, n->boxes.count, sizeof *d->near, &local);
@@ -241,8 +241,8 @@ vxm_status vxm_distance_nodes_report(vxm_distance_report *report, vxm_distance_n
   for (int w = 0; w < n->workers; w++) {
     const vxm_band_tally *t = &n->scratches[w].tally;
     report->exact += t->exact;
-    report->min = fmin(report->min, (double)t->least);
-    report->max = fmax(report->max, (double)t->greatest);
+    report->min = fmin(report->min, (double)t->min);
+    report->max = fmax(report->max, (double)t->max);
     inside += t->inside;
   }
   vxm_status status = n->pass ? look_for_thin(n, error) : VXM_OK;

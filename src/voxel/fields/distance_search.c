@@ -113,6 +113,6 @@ void vxm_distance_finish(const vxm_distance_search *search, float *values, const
     tally->exact += distance < search->band;
     float value = (float)((distance < search->band ? distance : search->band) * search->side);
     values[i] = inside >> i & 1 ? -value : value;
-    vxm_band_see(tally, values[i]);
+    vxm_band_tally_add(tally, values[i]);
   }
 }

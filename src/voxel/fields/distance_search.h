@@ -47,10 +47,4 @@ float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *s
 void vxm_distance_finish(const vxm_distance_search *search, float *values, const double *squares,
                          ptrdiff_t stride, uint64_t inside, int count, vxm_band_tally *tally);
 
-/** Notes a value. */
-static inline void vxm_band_see(vxm_band_tally *tally, float value) {
-  tally->least = value < tally->least ? value : tally->least;
-  tally->greatest = value > tally->greatest ? value : tally->greatest;
-}
-
 #endif

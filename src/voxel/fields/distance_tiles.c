@@ -57,9 +57,9 @@ static void put_far(vxm_distance_tiles *tiles, const vxm_band_kernels *kernels, 
                          .value = -most};
   const uint64_t valid = vxm_low_bits((unsigned)tile.count[0]);
   if ((any & valid) == 0)
-    vxm_band_see(tally, most);
+    vxm_band_tally_add(tally, most);
   else if ((all & valid) == valid) {
-    vxm_band_see(tally, -most);
+    vxm_band_tally_add(tally, -most);
     tally->inside += count[1] * count[2] * tile.count[0];
     put(tiles, &tile);
   } else {
@@ -90,7 +90,7 @@ void vxm_distance_tiles_fill(vxm_distance_tiles *tiles, const vxm_band_kernels *
                              const vxm_band_values *out, const int64_t at[3], const int64_t count[3],
                              vxm_band_tally *tally) {
   if (!out->words) {
-    vxm_band_see(tally, (float)(out->band * out->side));
+    vxm_band_tally_add(tally, (float)(out->band * out->side));
     return;
   }
   size_t ends = (size_t)(out->shift + count[0] + 63) / 64;

@@ -13,7 +13,8 @@ typedef struct vxm_distance_tiles {
   float values[VXM_BAND_TILE * VXM_BAND_TILE * VXM_BAND_TILE];
 } vxm_distance_tiles;
 
-/* `out` is of the first voxel: of its values, which are not written here, the rest. */
+/* `out` describes the grid from the first voxel of the tile on: its values are not written, as they go to the
+ * target instead; only its signs, band and side are used. */
 
 /** Puts a tile that has been measured. */
 void vxm_distance_tiles_finish(vxm_distance_tiles *tiles, const vxm_band_kernels *kernels,

@@ -196,8 +196,8 @@ static vxm_status take_labels(builder *b) {
   return VXM_OK;
 }
 
-/** The piece that a face of a label belongs to, made if it is new; `pool` is that of what is no piece itself.
- */
+/** The piece that a face of a body belongs to, made if it is new: the body's own, or `pool`, which the
+ * label's faces share that have none of their own. */
 static size_t piece_of(builder *b, size_t label, body *of, size_t *pool) {
   vxm_label_components *out = b->out;
   size_t *piece = of->is_open || of->label == SEVERAL ? pool : &of->piece;

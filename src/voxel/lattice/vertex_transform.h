@@ -27,7 +27,7 @@ typedef struct vxm_vertex_transform {
 
 /** Moves all points, by the threads of the context. */
 void vxm_vertex_transform_apply(vxm_context *context, double (*to)[3], const vxm_vertex_transform *motion);
-/** Moves those from `begin` on, before `end`, to the begin of `to`. */
+/** Moves points begin..end-1, to `to` from its beginning on. */
 void vxm_vertex_transform_range(double (*to)[3], const vxm_vertex_transform *motion, size_t begin,
                                 size_t end);
 

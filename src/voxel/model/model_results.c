@@ -9,8 +9,8 @@ struct vxm_model_results {
   vxm_model_result *first, *last; /**< of the list; and the one that was asked for last */
 };
 
-/** An address that no two threads have at the same time. One that is made later may have that of one that has
- * ended, so that a list does not grow with every thread there ever was. */
+/** An address that no two living threads share. A new thread may have the address of one that has ended, so
+ * that the list need not grow with every thread there ever was. */
 static const void *this_thread(void) {
   static _Thread_local char place;
   return &place;

@@ -58,8 +58,8 @@ static bool flip_slab(const vote_state *state, size_t set, size_t slab, uint64_t
   return any;
 }
 
-/** What is open along slices at the begin of a stripe but for the flips before the window: all flips of the
- * slabs of the stripe before it, put into one slice. */
+/** What is open along slices at the beginning of the next stripe, but for flips before this one: all flips of
+ * the slabs of this stripe, added up in one slice. */
 static void sum_stripe(size_t stripe, int worker, void *payload) {
   vote_state *state = payload;
   const vxm_window *window = state->window;
@@ -92,8 +92,8 @@ static void fold_fast(const vote_state *state, const slab *s, int set) {
                             vxm_window_tail_mask(state->window));
 }
 
-/** The voter that differs from the fast axis by what a set flips; the fast axis itself where that is nothing.
- */
+/** The voter of another axis: the fast axis' words with what a set flips, or these words themselves where it
+ * flips nothing. */
 static const uint64_t *voter_of(const vote_state *state, const slab *s, int set) {
   if (!s->used[set])
     return s->words[BASE];
@@ -112,8 +112,8 @@ static void fold_middle(const vote_state *state, slab *s) {
     state->kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
 }
 
-/** The flips along the slow axis, folded along it. `carry` is what is open along slices at the begin of the
- * slab, then at its end. */
+/** The flips along the slow axis, folded along it. `carry` is what is open along slices at the beginning of
+ * the slab, then at its end. */
 static void fold_slow(const vote_state *state, slab *s, uint64_t *carry) {
   size_t slice = state->window->slice_words;
   uint64_t *words = s->words[SLOW];

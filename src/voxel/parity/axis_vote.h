@@ -5,8 +5,9 @@
  * and what the tetrahedra add by its cones. While a slab is in cache all voters are folded and combined, so
  * that only the outcome goes to memory.
  *
- * Slabs are cut across slices. Parity along slices needs to know what was open at the begin of a slab: each
- * thread takes a run of slabs in order and carries it along, starting from the flips in all slabs before.
+ * Slabs are cut across slices. Parity along slices needs to know what was open at the beginning of a slab:
+ * each thread takes a run of slabs in order and carries it along, starting from the flips in all slabs
+ * before.
  */
 #ifndef VXM_VOXEL_PARITY_AXIS_VOTE_H
 #define VXM_VOXEL_PARITY_AXIS_VOTE_H
@@ -23,8 +24,8 @@ typedef struct vxm_axis_vote_job {
                     two or three that do not abstain call outside is, and the rest is left to others */
   bool fresh;    /**< the window's words are replaced; else voxels are added to them */
   uint64_t *mask;  /**< NULL, or words laid out as the window's that become the contested voxels */
-  uint64_t *carry; /**< a slice of words: what is open along slices at the begin of the window; becomes that
-                      at its end. Zeros for the first window */
+  uint64_t *carry; /**< a slice of words: what is open along slices at the beginning of the window; becomes
+                      that at its end. Zeros for the first window */
 } vxm_axis_vote_job;
 
 /**

@@ -73,7 +73,8 @@ vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, 
                                    vxm_error *error);
 void vxm_triangle_set_destroy(vxm_triangle_set *triangles);
 
-/** What shows where faces lie, rather than to count how often they do. */
+/** The triangles to look at where it matters where faces lie; for crossings, which are only counted, take
+ * `corners`. */
 static inline const uint32_t (*vxm_pieces_of(const vxm_triangle_set *triangles))[3] {
   return (const uint32_t(*)[3])(triangles->pieces ? triangles->pieces : triangles->corners);
 }

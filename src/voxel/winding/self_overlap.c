@@ -68,8 +68,8 @@ static inline int cell_of(const line_places *l, double at) {
   return cell > 0 ? cell < CELLS ? (int)cell : CELLS - 1 : 0;
 }
 
-/** Lines at a place or below. All that is asked of a place is asked by this, so that triangles that share a
- * side agree on it. */
+/** How many lines lie at a coordinate or below. Every comparison of a coordinate with lines goes through
+ * this, so that triangles that share an edge agree. */
 static inline uint8_t lines_below(const line_places *l, double at) {
   int count = l->first[cell_of(l, at)];
   count += l->at[count] <= at; /* few cells have a second one, so that the loop is rarely gone through */

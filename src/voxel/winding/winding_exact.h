@@ -12,11 +12,10 @@
  *
  * @param out    number 16 z + 4 y + x is that of a voxel of the brick; others are left as they are
  * @param origin the first voxel of the brick
- * @param around voxels from all of which nodes must be that far, a bit for each
- * @param which  those of them that are asked for. The number of one does not depend on the others
- * @param close  those of which the number is likely to be close to a number and a half; of others less
- *               accurate sums are tried first, which tell on which side of it the number is unless they come
- *               close to it
+ * @param around a bit for each voxel that nodes must be that far away from
+ * @param which  a bit for each voxel that is asked for; its number does not depend on the others
+ * @param close  those of which the number is likely to be close to a half-integer. Of the others less
+ * accurate sums are tried first, which do unless they come close to one
  */
 void vxm_winding_exact(double out[VXM_BRICK], const vxm_winding_kernels *kernels,
                        const vxm_winding_tree *tree, const int64_t origin[3], uint64_t around, uint64_t which,

@@ -9,7 +9,7 @@
  * Sets in a window the voxels whose winding number is above 1/2; of those asked about, if not all are: others
  * stay as they are.
  *
- * First by floats; bricks in which a voxel asked about comes within 0.008 of a number and a half are looked
+ * First by floats; bricks in which a voxel asked about comes within 0.008 of a half-integer are looked
  * at again more strictly, and voxels that are then within 0.0003 of it by doubles. Within 10^-6 of one half a
  * voxel is outside.
  *

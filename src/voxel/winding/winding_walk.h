@@ -46,7 +46,7 @@ typedef struct vxm_winding_walk vxm_winding_walk;
 typedef struct vxm_winding_brick {
   float value[VXM_BRICK];
   uint64_t above[2]; /**< -1/2, 1/2 */
-  uint64_t doubtful; /**< they are nearer to a number and a half than walk->doubt, or may lie on a triangle */
+  uint64_t doubtful; /**< they are nearer to a half-integer than walk->doubt, or may lie on a triangle */
 } vxm_winding_brick;
 
 /** What one thread works with. */
