@@ -94,7 +94,8 @@ static bool create_named(vxm_atomic_file *file) {
   return file->descriptor >= 0;
 }
 
-/** The lock tells others that the file is not abandoned; one that took it for that has removed it. */
+/** Makes the file under a temporary name and locks it, which tells other processes that it is not abandoned.
+ * One that came before the lock may have removed it: then another is made. */
 static bool open_named(vxm_atomic_file *file) {
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
     if (!find_name(file, create_named))

@@ -25,7 +25,7 @@ typedef struct vxm_atomic_folder {
   vxm_output_path destination; /**< `name` may be that of a folder */
   int descriptor;              /**< of the new one, locked */
   int old;                     /**< of what it replaced, locked; -1 = none */
-  /** Its present name; of a published one that of what it replaced; "" = none. */
+  /** Its name until it is published, then the name of the folder that it replaced; "" = none. */
   char temporary[VXM_ATOMIC_FOLDER_TEMPORARY];
   bool is_published, has_replaced;
   const char *mark, *what; /**< as given */

@@ -16,7 +16,7 @@ typedef struct vxm_stock_tile {
 
 /** Start with vxm_stock_of_grid or vxm_stock_of_sparse. */
 typedef struct vxm_stock {
-  vxm_context *context; /**< lent, as are these two, of which one is NULL */
+  vxm_context *context; /**< lent, and so are the next two, one of which is NULL */
   vxm_grid *grid;
   const vxm_sparse *sparse;
   vxm_stock_tile *tiles; /**< a table with open addressing; its size is a power of two */

@@ -117,7 +117,8 @@ bool binvox_carve(binvox_bits *bits) {
 
 /* ---- Neighbours ---- */
 
-/** Replaces each voxel by what its six neighbours and it make: any of them, or it without all of them. */
+/** Dilation sets the voxels of which one of the six neighbours, or the voxel itself, is set; else the voxels
+ * are kept that have an empty neighbour. */
 static bool combine_neighbours(binvox_bits *bits, bool is_dilation) {
   const int64_t *dims = bits->space.dims;
   binvox_bits made;

@@ -232,7 +232,7 @@ vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsi
   return status;
 }
 
-/** A folder that is a grid is told as what it is. */
+/** Whether a folder is a Zarr array, so that the error can say so. */
 static bool is_zarr(const char *path) {
   int folder = open(path, O_PATH | O_DIRECTORY | O_CLOEXEC);
   bool found = folder >= 0 && faccessat(folder, ".zarray", F_OK, 0) == 0;

@@ -196,7 +196,7 @@ static void turn_slice(unsigned char *out, const vxm_field *field, int64_t x) {
       memcpy(out + (z * ny + y) * size, from, size);
 }
 
-/** A slice in an order; in that of the field it is where it lies. */
+/** A slice in the order of a layout: in `room`, or, where the field has that order, in the field itself. */
 static const unsigned char *take_slice(unsigned char *room, const vxm_field *field, vxm_layout layout,
                                        int64_t slice) {
   if (vxm_layout_is_grid(layout))

@@ -14,9 +14,9 @@ enum { VXM_LATTICE_FANS_MAX = 4, VXM_LATTICE_FACES = 12, VXM_LATTICE_CASES = 256
  * For each choice of set voxels about a point: bit x + 2 y + 4 z is that of the voxel on the far (1) or near
  * (0) side along each axis. The faces about the point are numbered by vxm_lattice_face.
  *
- * Where four faces meet in an edge, those of one voxel belong together. A fan is what hangs together then: a
- * closed walk of faces about the point. It is moved into the voxels that touch others in its edges, so that
- * these part; else to the side that its faces turn their backs to.
+ * Where four faces meet in an edge, those of one voxel belong together. What is connected then is a fan: a
+ * closed walk of faces about the point. Its vertex is moved into the voxels that touch others along edges of
+ * the fan, so that these come apart; if there are none, to the back of its faces.
  */
 typedef struct vxm_lattice_fans {
   uint8_t count[VXM_LATTICE_CASES];

@@ -155,7 +155,7 @@ const vxm_external_format *vxm_external_format_by_name(const char *name) {
 /* ---- What is not read ---- */
 
 const char *vxm_external_format_refusal(const char *extension) {
-  /* Scenes that say which other files to put where. */
+  /* Scenes that place the models of other files. */
   static const char *const importing[] = {"lws", "irr", "mot", "scn", "pk3", "bsp", "md3", NULL};
   static const char *const usd[] = {"usd", "usda", "usdc", "usdz", NULL};
   /* Read by Assimp too, and by few others: their readers are not looked after. */

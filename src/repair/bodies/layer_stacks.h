@@ -12,9 +12,9 @@ typedef struct vxm_patch_border {
 } vxm_patch_border;
 
 /**
- * Chooses the layers of patches that have the same border and lie upon each other, so that a ray tells what
- * is before and behind all of them together: one after the other, and those that run the other way where they
- * cancel the last ones.
+ * Chooses the layers of patches that have the same border and coincide, so that a ray only tells the winding
+ * numbers before and behind all of them together. They are stacked one behind the other; a patch of the
+ * opposite orientation cancels the last one before it.
  *
  * @param borders sorted by patch, then by edge
  * @param reach   as in vxm_layers_balance; layers->front is one of both

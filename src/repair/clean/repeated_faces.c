@@ -21,14 +21,14 @@ typedef enum kind {
               number, all of one orientation */
 } kind;
 
-/** A set of kinds that edges connect, all sheets or all of the same way; told at the face that stands for it.
- */
+/** A set of kinds of faces that edges connect, all of them sheets or all of copies that run the same way;
+ * stored at the face that stands for the set. */
 typedef struct fin {
   bool touches;    /**< along an edge there are other faces */
   bool hangs;      /**< along such an edge an odd number of its kinds end */
   bool rimmed;     /**< the same along an edge without others */
   bool unbalanced; /**< of its kinds, taken once, more sides run along an edge one way than the other */
-  int overlaps; /**< edges where the other faces lie on one side of it, less those where they lie on both */
+  int overlaps;    /**< edges with all other faces on one side of it, less those with some on either side */
   uint32_t least, most; /**< copies of any of its kinds that stay */
   size_t largest;       /**< its largest face */
   double area;          /**< of that */
@@ -41,7 +41,7 @@ typedef struct deciding {
   vxm_edge_groups groups;
   double scale;
   uint8_t *kinds;   /**< per face: of the first of its kind */
-  uint32_t *keep;   /**< per first face, twice: how many stay that run as it does, and the other way */
+  uint32_t *keep;   /**< per first face: how many copies stay of its orientation, and of the other */
   size_t *parent;   /**< per first face: another one of its fin, or itself */
   fin *fins;        /**< per face that stands for one */
   size_t *at_edge;  /**< per edge, twice: 1 + the first sheet at it; the same for the same way */
@@ -241,7 +241,8 @@ static void settle(deciding *d, const uint8_t *within) {
     uint32_t *keep = &d->keep[2 * face];
     if (vxm_repair_state_guards(d->state, face))
       continue;
-    bool drifts = f->touches && f->unbalanced && balanced; /* one side of it would turn what is balanced */
+    bool drifts =
+        f->touches && f->unbalanced && balanced; /* one copy alone would leave the group unbalanced */
     if (within[root] ||
         (sheet && f->hangs && f->rimmed && d->fin_area[group] <= FIN_PART * d->rest_area[group]))
       keep[0] = keep[1] = 0;

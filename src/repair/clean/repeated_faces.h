@@ -9,18 +9,18 @@
 /**
  * Marks the faces that may go without the loss of a body, and without opening what is closed.
  *
- * A group is what edges connect (repair/state/edge_groups.h). Where it is open, of faces that repeat each
- * other one stays: a sheet that was drawn from both sides is one sheet. Where it is closed, a set of repeated
- * faces that edges connect is judged as a whole:
- *  - If it is closed for itself, as a body that is there twice, one of each of its faces stays.
+ * A group is a set of faces that edges connect (repair/state/edge_groups.h). In an open group one of several
+ * faces that repeat each other stays: a sheet that was drawn from both sides is one sheet. In a closed group
+ * a set of repeated faces that edges connect is judged as a whole:
+ *  - If it is closed by itself, as a body that is there twice, one copy of each of its faces stays.
  *  - If it lies within the solid on both sides, as the wall between two rooms, all of it goes; of what was
- *    drawn from both sides and is closed for itself, only if each of its faces lies there.
+ *    drawn from both sides and is closed by itself, only if each of its faces lies there.
  *  - A fin, drawn from both sides, with a rim of its own goes, as long as such fins have no more than a tenth
  *    of the area of the rest of their group: one side of it would leave the body open. A chair that is mostly
  *    sheets of two sides does not lose them.
- *  - Else bodies share it, and neither is closed without. Where the group is balanced, so many stay as there
- *    are more of one orientation than of the other: how often the faces wind round any point does not change.
- *    Of as many one way as the other, one of each stays.
+ *  - Else bodies share it, and neither is closed without it. Where the group is balanced, as many copies stay
+ *    as there are more of one orientation than of the other, so that the winding number of no point changes.
+ * If there are as many of one as of the other, one of each stays.
  *  - Where the group is closed but not balanced (faces are turned against each other), all copies of one
  *    orientation stay if two bodies lie on the same side of them; else one does.
  *

@@ -33,8 +33,8 @@ static vxm_status round_positions(vxm_repair_state *state, vxm_error *error) {
   return VXM_OK;
 }
 
-/** Before it, faces have been reduced, and of those that repeat others one is left: triangles would hide
- * that. */
+/** Comes after the passes that reduce faces and remove repeated ones, as these could not be seen any more
+ * once polygons are triangles. */
 vxm_status vxm_pass_rounding(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   if (!state->options.single_precision && !state->options.triangles)

@@ -24,9 +24,9 @@ typedef struct vxm_face_pairs {
 
 typedef struct vxm_union_report {
   int64_t parts;  /**< closed components that came in */
-  int64_t united; /**< of them, those that were joined with another one, or lay inside one */
-  int64_t cut;    /**< of the others, those that were cut along where they meet themselves or touch another */
-  int64_t failed; /**< those that are in the result as they were although they should not be */
+  int64_t united; /**< those of them that were joined with another one, or lay inside one */
+  int64_t cut;    /**< of the others, those that were cut where they meet themselves or touch another */
+  int64_t failed; /**< those that should have been changed, but are in the result as they were */
   uint64_t *
       failed_faces; /**< one face of the input for each failed part; a block of the soup's context, or NULL */
 } vxm_union_report;
@@ -60,9 +60,9 @@ typedef struct vxm_cgal {
    * other) into the surface of their union. The others, and those without a volume, stay as they are.
    *
    * A component that is wound outward is solid where it winds around a place at least once. One that is wound
-   * inward is a cavity of the smallest solid that it lies inside of without touching it; where there is none
-   * it is taken away from all that it touches, and left as it is, and counted as failed, where it touches
-   * nothing.
+   * inward is a cavity of the smallest solid that it lies inside of without touching it. Where there is none
+   * it is subtracted from all that it touches; where it touches nothing it is left as it is and counted as
+   * failed.
    *
    * The surface is cut exactly and then rounded to doubles; no two of its faces meet elsewhere than in
    * corners and edges they share, and none is without area. Where doubles cannot hold that, the parts

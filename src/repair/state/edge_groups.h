@@ -8,8 +8,8 @@
 /** What the edges of a group tell. */
 typedef struct vxm_edge_group {
   bool closed;   /**< every edge has an even number of sides */
-  bool balanced; /**< as many sides run along every edge one way as the other: how often the faces wind round
-                    a point is a whole number, and it changes at the faces alone */
+  bool balanced; /**< along every edge as many sides run one way as the other, so that winding numbers are
+                    whole and change only at faces */
   bool manifold; /**< no edge has more than two sides */
 } vxm_edge_group;
 

@@ -14,7 +14,7 @@ static void cross(double out[3], const double a[3], const double b[3]) {
     out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-/** Makes a vector unit, and returns the length it had; it is left as it is if that is 0. */
+/** Makes a vector unit, unless it is 0, and returns the length that it had. */
 static double normalize(double a[3]) {
   double length = sqrt(dot(a, a));
   double inverse = length > 0 ? 1 / length : 1;

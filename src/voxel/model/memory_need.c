@@ -40,8 +40,8 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
   return bins + slabs + lines + held * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
 }
 
-/** What is held of the surface while thin parts are looked for: where all of it is thin, all that it meets;
- * and the order of triangles, or maps and short numbers of the cells of points. */
+/** What is held while thin parts are looked for: all meetings, of which there are most where all of the
+ * surface is thin, and the order of triangles, or maps and short numbers of the cells of points. */
 static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space, const vxm_window *shape) {
   const vxm_triangle_set *triangles = &model->analysis.triangles;
   enum { AXES = 3 };

@@ -6,8 +6,8 @@
 #include <string.h>
 
 enum {
-  LINES_EVEN = 12,             /**< along y, and along z: so many at most as far apart as one another, */
-  LINES_MOST = 2 * LINES_EVEN, /**< and as many where the points of a part are */
+  LINES_EVEN = 12,             /**< along y, and along z: evenly spaced ones at most, */
+  LINES_MOST = 2 * LINES_EVEN, /**< and as many again where the points of a part are */
   SAMPLES = 64,                /**< points that tell where these are */
   CELLS = 256,                 /**< of a part's width, in which lines are looked up */
   CROSSINGS_MOST = 1 << 16,    /**< with more there are fewer lines */
