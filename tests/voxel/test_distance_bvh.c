@@ -129,14 +129,14 @@ static vxm_point_block random_tile(double extent, vxm_rng *rng, int kind) {
   for (int a = 0; a < 3; a++) {
     tile.step[a] = kind % 4 == 3 ? 0.3 + 0.7 * vxm_rng_unit(rng) : 1;
     tile.first[a] = (int64_t)vxm_rng_below(rng, (uint64_t)extent + 1);
-    tile.count[a] = kind % 2 ? 1 + (int)vxm_rng_below(rng, VXM_TILE) : VXM_TILE;
+    tile.count[a] = kind % 2 ? 1 + (int)vxm_rng_below(rng, VXM_BVH_TILE) : VXM_BVH_TILE;
   }
   return tile;
 }
 
 static void check_tile(const vxm_distance_bvh *tree, const vxm_point_block *tile,
                        const vxm_distance_triangle *triangles, size_t count) {
-  static double squares[2][VXM_TILE_POINTS];
+  static double squares[2][VXM_BVH_TILE_POINTS];
   vxm_distance_bvh_tile_fn *builds[2];
   size_t build_count = vxm_distance_bvh_tile_all(builds);
   bool is_met[2];
@@ -156,7 +156,7 @@ static void check_tile(const vxm_distance_bvh *tree, const vxm_point_block *tile
         for (size_t t = 0; t < count; t++)
           right = fmin(right, vxm_triangle_distance2(&triangles[t], p));
         for (size_t b = 0; b < build_count; b++) {
-          double made = is_met[b] ? squares[b][(k * VXM_TILE + j) * VXM_TILE + i] : INFINITY;
+          double made = is_met[b] ? squares[b][(k * VXM_BVH_TILE + j) * VXM_BVH_TILE + i] : INFINITY;
           if (right < most2 ? made != right : made < most2)
             fail_msg("(%d, %d, %d), build %zu: %.17g, not %.17g", i, j, k, b, made, right);
         }
@@ -207,7 +207,7 @@ static void test_middle_of_a_sphere(void **state) {
   }
   vxm_distance_bvh *tree;
   assert_int_equal(vxm_distance_bvh_create(&tree, context, COUNT, corners_of, corners, NULL), VXM_OK);
-  vxm_point_block tile = {{0, 0, 0}, {VXM_TILE, VXM_TILE, VXM_TILE}, {1, 1, 1}, INFINITY};
+  vxm_point_block tile = {{0, 0, 0}, {VXM_BVH_TILE, VXM_BVH_TILE, VXM_BVH_TILE}, {1, 1, 1}, INFINITY};
   check_tile(tree, &tile, triangles, COUNT);
   vxm_distance_bvh_destroy(tree);
   free(triangles);
@@ -234,7 +234,7 @@ static void test_far_away(void **state) {
     }
     vxm_distance_bvh *tree;
     assert_int_equal(vxm_distance_bvh_create(&tree, context, COUNT, corners_of, corners, NULL), VXM_OK);
-    vxm_point_block tile = {{0, 0, 0}, {VXM_TILE, VXM_TILE, VXM_TILE}, {1, 1, 1}, INFINITY};
+    vxm_point_block tile = {{0, 0, 0}, {VXM_BVH_TILE, VXM_BVH_TILE, VXM_BVH_TILE}, {1, 1, 1}, INFINITY};
     check_tile(tree, &tile, triangles, COUNT);
     vxm_distance_bvh_destroy(tree);
   }

@@ -33,12 +33,12 @@ vxm_status vxm_search_create(vxm_search **out, const vxm_distance_bvh *tree, vxm
 void vxm_search_destroy(vxm_search *search);
 
 /** Points along an edge of a tile. */
-enum { VXM_TILE = 16, VXM_TILE_POINTS = VXM_TILE * VXM_TILE * VXM_TILE };
+enum { VXM_BVH_TILE = 16, VXM_BVH_TILE_POINTS = VXM_BVH_TILE * VXM_BVH_TILE * VXM_BVH_TILE };
 
 /** Points of a lattice: point (i,j,k) has the coordinates (i + 1/2) * step[0] and so on. */
 typedef struct vxm_point_block {
   int64_t first[3]; /**< the first point of the tile */
-  int count[3];     /**< points along each axis, 1 to VXM_TILE */
+  int count[3];     /**< points along each axis, 1 to VXM_BVH_TILE */
   double step[3];
   double max_distance; /**< what is as far or farther does not matter; INFINITY = all does */
 } vxm_point_block;
@@ -48,7 +48,8 @@ typedef struct vxm_point_block {
  * vxm_triangle_distance2 gives, in all builds to the bit, where that is below max_distance^2; elsewhere
  * something that is no less than that.
  *
- * @param squares VXM_TILE rows of VXM_TILE for each of VXM_TILE slices, of which the points are filled
+ * @param squares VXM_BVH_TILE rows of VXM_BVH_TILE for each of VXM_BVH_TILE slices, of which the points are
+ * filled
  * @return false if no point is nearer than `max_distance`; then there are no squares
  */
 typedef bool vxm_distance_bvh_tile_fn(vxm_search *search, double *squares, const vxm_point_block *tile);

@@ -19,13 +19,13 @@ typedef struct measure {
   vxm_model_pass *pass; /**< NULL without a sign */
   const vxm_space *space;
   vxm_distance_search search;
-  int64_t dims[3];        /**< in the order of the values */
-  float beyond[VXM_TILE]; /**< values beyond the band */
+  int64_t dims[3];            /**< in the order of the values */
+  float beyond[VXM_BVH_TILE]; /**< values beyond the band */
   bool is_signed;
   vxm_distance_band *near; /**< where there is a narrow band */
   vxm_distance_bvh_tile_fn *find;
   vxm_search **searches; /**< of each worker */
-  double *squares;       /**< VXM_TILE_POINTS for each worker */
+  double *squares;       /**< VXM_BVH_TILE_POINTS for each worker */
   vxm_window solid;      /**< its words NULL without a sign */
   float *values;         /**< of the slices at hand */
   int64_t begin, end;    /**< these slices */
@@ -47,10 +47,10 @@ static measure measure_of(vxm_context *context, const vxm_space *space, vxm_layo
                .dims = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]},
                .is_signed = !options->is_unsigned,
                .find = vxm_distance_bvh_tile_best()};
-  for (int i = 0; i < VXM_TILE; i++)
+  for (int i = 0; i < VXM_BVH_TILE; i++)
     m.beyond[i] = vxm_distance_limit(options, space);
-  m.across = (m.dims[0] + VXM_TILE - 1) / VXM_TILE;
-  m.down = (m.dims[1] + VXM_TILE - 1) / VXM_TILE;
+  m.across = (m.dims[0] + VXM_BVH_TILE - 1) / VXM_BVH_TILE;
+  m.down = (m.dims[1] + VXM_BVH_TILE - 1) / VXM_BVH_TILE;
   return m;
 }
 
@@ -71,12 +71,12 @@ static void fill_row(const measure *m, float *values, uint64_t inside, int count
 static vxm_point_block tile_of(const measure *m, size_t task) {
   vxm_point_block tile = {.max_distance = m->search.band};
   int64_t row = (int64_t)task / m->across;
-  const int64_t first[3] = {(int64_t)task % m->across * VXM_TILE, row % m->down * VXM_TILE,
-                            m->begin + row / m->down * VXM_TILE};
+  const int64_t first[3] = {(int64_t)task % m->across * VXM_BVH_TILE, row % m->down * VXM_BVH_TILE,
+                            m->begin + row / m->down * VXM_BVH_TILE};
   const int64_t end[3] = {m->dims[0], m->dims[1], m->end};
   for (int a = 0; a < 3; a++) {
     tile.first[m->search.axes[a]] = first[a];
-    tile.count[m->search.axes[a]] = (int)vxm_min(end[a] - first[a], VXM_TILE);
+    tile.count[m->search.axes[a]] = (int)vxm_min(end[a] - first[a], VXM_BVH_TILE);
     tile.step[a] = m->space->voxel_size[a] / m->search.side;
   }
   return tile;
@@ -84,7 +84,7 @@ static vxm_point_block tile_of(const measure *m, size_t task) {
 
 /** Tiles always lie along x, y and z, whatever the order of the values, which then makes no difference. */
 static void finish_tile(const measure *m, const vxm_point_block *tile, const double *squares, tally *t) {
-  static const ptrdiff_t strides[3] = {1, VXM_TILE, (ptrdiff_t)VXM_TILE * VXM_TILE};
+  static const ptrdiff_t strides[3] = {1, VXM_BVH_TILE, (ptrdiff_t)VXM_BVH_TILE * VXM_BVH_TILE};
   const int fast = m->search.axes[0], middle = m->search.axes[1], slow = m->search.axes[2],
             count = tile->count[fast];
   const int64_t at = tile->first[fast];
@@ -107,7 +107,7 @@ static void measure_tile(size_t task, int worker, void *payload) {
   if (vxm_task_progress_stopped(&m->progress, worker))
     return;
   vxm_point_block tile = tile_of(m, task);
-  double *squares = m->squares + (size_t)worker * VXM_TILE_POINTS;
+  double *squares = m->squares + (size_t)worker * VXM_BVH_TILE_POINTS;
   bool is_met = m->find(m->searches[worker], squares, &tile);
   finish_tile(m, &tile, is_met ? squares : NULL, &m->tallies[worker]);
   vxm_task_progress_step(&m->progress);
@@ -131,7 +131,7 @@ static vxm_status measure_slices(measure *m, const vxm_field_target *target, int
                                            m->tallies, error)
                : vxm_distance_band_measure(m->near, NULL, m->values, &m->solid, begin, end, m->search.side,
                                            m->tallies, error);
-  size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
+  size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_BVH_TILE - 1) / VXM_BVH_TILE));
   vxm_task_progress_start(&m->progress, m->context, "measuring distances", tiles, error);
   vxm_parallel(m->context, tiles, measure_tile, m);
   return vxm_task_progress_end(&m->progress);
@@ -142,7 +142,7 @@ static vxm_status measure_slices(measure *m, const vxm_field_target *target, int
 static vxm_status measure_windows(measure *m, const vxm_field_target *target, const vxm_field_plan *plan,
                                   vxm_error *error) {
   int64_t length = m->dims[2], slices = plan->slices;
-  const int64_t tile = m->near ? VXM_BAND_TILE : VXM_TILE;
+  const int64_t tile = m->near ? VXM_BAND_TILE : VXM_BVH_TILE;
   if (slices > tile) /* whole tiles cost less */
     slices -= slices % tile;
   else if (m->way == VXM_DISTANCE_TILES && slices < length)
@@ -197,7 +197,7 @@ static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   if (m->search.tree) {
     m->searches = vxm_calloc(context, (size_t)workers, sizeof *m->searches, &local);
-    m->squares = vxm_alloc(context, (size_t)workers * VXM_TILE_POINTS, sizeof *m->squares, &local);
+    m->squares = vxm_alloc(context, (size_t)workers * VXM_BVH_TILE_POINTS, sizeof *m->squares, &local);
   }
   m->tallies = vxm_calloc(context, (size_t)workers, sizeof *m->tallies, &local);
   for (int w = 0; w < workers && local.code == VXM_OK; w++) {
@@ -260,7 +260,7 @@ vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const 
   uint64_t fixed = vxm_distance_search_bytes(model->analysis.soup, options, &triangles);
   const int64_t dims[3] = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]};
   uint64_t each =
-      vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) + sizeof(void *);
+      vxm_distance_bvh_search_bytes(triangles) + VXM_BVH_TILE_POINTS * sizeof(double) + sizeof(void *);
   fixed += vxm_distance_is_narrow(options) ? vxm_distance_band_bytes(triangles, workers, dims)
                                            : (uint64_t)workers * each;
   fixed += (uint64_t)workers * sizeof(tally);

@@ -72,8 +72,8 @@ static void finish_tree(const vxm_distance_nodes *n, int worker, const int64_t a
     for (int y = 0; y < vxm_node_count(n->space, at, 1); y++) {
       const size_t row = (size_t)(SIDE * z + y);
       d->tally.inside += vxm_popcount(rows[row]);
-      vxm_distance_finish(&n->search, values + SIDE * row, d->squares + VXM_TILE * row, 1, rows[row], count,
-                          &d->tally);
+      vxm_distance_finish(&n->search, values + SIDE * row, d->squares + VXM_BVH_TILE * row, 1, rows[row],
+                          count, &d->tally);
     }
 }
 
@@ -138,7 +138,7 @@ static vxm_status make_scratches(vxm_distance_nodes *n, vxm_error *error) {
       d->tile = vxm_alloc(n->context, 1, sizeof *d->tile, &local);
       d->near = vxm_alloc(n->context, n->boxes.count, sizeof *d->near, &local);
     } else if (vxm_search_create(&d->search, n->search.tree, &local) == VXM_OK)
-      d->squares = vxm_alloc(n->context, VXM_TILE_POINTS, sizeof *d->squares, &local);
+      d->squares = vxm_alloc(n->context, VXM_BVH_TILE_POINTS, sizeof *d->squares, &local);
   }
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
@@ -161,7 +161,7 @@ uint64_t vxm_distance_nodes_bytes(const vxm_model *model, const vxm_distance_opt
   uint64_t bytes = vxm_distance_search_bytes(model->analysis.soup, options, &triangles);
   uint64_t each = vxm_distance_is_narrow(options)
                       ? sizeof(vxm_band_tile) + triangles * sizeof(uint32_t)
-                      : vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double);
+                      : vxm_distance_bvh_search_bytes(triangles) + VXM_BVH_TILE_POINTS * sizeof(double);
   if (vxm_distance_is_narrow(options))
     bytes += vxm_node_boxes_bytes(triangles, workers);
   return bytes + (uint64_t)workers * (sizeof(scratch) + each);

@@ -35,8 +35,8 @@ float vxm_nearness_at(double distance) {
 /* ---- Triangles and boxes from a point ---- */
 
 /** What is seen of a foot; without a gradient where that is too near to have one. */
-static vxm_near seen(const double p[3], const double foot[3], double square) {
-  vxm_near near = {.nearness = nearness_of(square), .distance = sqrtf((float)square)};
+static vxm_label_hit seen(const double p[3], const double foot[3], double square) {
+  vxm_label_hit near = {.nearness = nearness_of(square), .distance = sqrtf((float)square)};
   float inverse = near.distance > (float)slack ? 1 / near.distance : 0;
   for (int a = 0; a < 3; a++)
     near.gradient[a] = (float)(p[a] - foot[a]) * inverse;
@@ -48,15 +48,16 @@ float vxm_label_bvh_nearness(const vxm_label_bvh *bvh, uint32_t triangle, const 
   return nearness_of(vxm_closest_point(&bvh->triangles[triangle], p, foot));
 }
 
-vxm_near vxm_label_bvh_view(const vxm_label_bvh *bvh, uint32_t label, uint32_t triangle, const double p[3]) {
+vxm_label_hit vxm_label_bvh_view(const vxm_label_bvh *bvh, uint32_t label, uint32_t triangle,
+                                 const double p[3]) {
   double foot[3], square = vxm_closest_point(&bvh->triangles[triangle], p, foot);
-  vxm_near near = seen(p, foot, square);
+  vxm_label_hit near = seen(p, foot, square);
   near.label = label;
   near.triangle = triangle;
   return near;
 }
 
-static vxm_near view_box(const node *n, const double p[3]) {
+static vxm_label_hit view_box(const node *n, const double p[3]) {
   double foot[3], square = 0;
   for (int a = 0; a < 3; a++) {
     foot[a] = p[a] < n->low[a] ? n->low[a] : p[a] > n->high[a] ? n->high[a] : p[a];
@@ -81,7 +82,8 @@ static float to_box(const node *n, const double p[3]) {
  * other: the distance of what is convex is convex, so the other has at least d + g.u; the foot of the nearest
  * is at most D + G.u + u.u / 2D away, and at most D + |u|.
  */
-bool vxm_bvh_block_excludes(const vxm_bvh_block *block, const vxm_near *nearest, const vxm_near *other) {
+bool vxm_bvh_block_excludes(const vxm_bvh_block *block, const vxm_label_hit *nearest,
+                            const vxm_label_hit *other) {
   double to_nearest = (double)nearest->distance, to_other = (double)other->distance,
          ahead = to_other * (1 - relative_slack) - slack - to_nearest, turn = 0;
   if (ahead > 2 * block->reach)
@@ -101,12 +103,12 @@ typedef struct query {
   const double *p;
   float nearness; /**< what is to be bettered */
   uint32_t label, triangle;
-  uint32_t kept; /**< as in vxm_among */
+  uint32_t preferred; /**< as in vxm_label_filter */
 } query;
 
 /** Of equally near labels the one with the lowest rank is taken; nodes of several may have any. */
 static uint32_t rank_of(const query *q, uint32_t label) {
-  return label == q->kept ? 0 : label;
+  return label == q->preferred ? 0 : label;
 }
 
 /** Whether something of this nearness in a node could be better. */
@@ -153,45 +155,46 @@ static void search(query *q, const node *at) {
 }
 
 /** The roots of what is asked about; returns how many. */
-static int roots_of(const node *out[2], const vxm_label_bvh *bvh, vxm_among among) {
+static int roots_of(const node *out[2], const vxm_label_bvh *bvh, vxm_label_filter filter) {
   int count = 0;
-  if (among.label[0] == 0) {
+  if (filter.label[0] == 0) {
     out[0] = bvh->nodes;
     return 1;
   }
   for (int i = 0; i < 2; i++) {
-    uint32_t root = bvh->root[among.label[i] - 1];
+    uint32_t root = bvh->root[filter.label[i] - 1];
     if (root != VXM_NO_ROOT)
       out[count++] = &bvh->nodes[root];
   }
   return count;
 }
 
-vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_among among, const double p[3],
-                               const vxm_near *from) {
-  query q = {.bvh = bvh, .p = p, .nearness = from->nearness, .kept = among.kept};
+vxm_label_hit vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_label_filter filter, const double p[3],
+                                    const vxm_label_hit *from) {
+  query q = {.bvh = bvh, .p = p, .nearness = from->nearness, .preferred = filter.preferred};
   if (from->label) {
     q.nearness = vxm_label_bvh_nearness(bvh, from->triangle, p);
     q.label = from->label;
     q.triangle = from->triangle;
   }
   const node *roots[2];
-  int count = roots_of(roots, bvh, among);
+  int count = roots_of(roots, bvh, filter);
   for (int i = 0; i < count; i++)
     search(&q, roots[i]);
-  return q.label ? vxm_label_bvh_view(bvh, q.label, q.triangle, p) : (vxm_near){.nearness = INFINITY};
+  return q.label ? vxm_label_bvh_view(bvh, q.label, q.triangle, p) : (vxm_label_hit){.nearness = INFINITY};
 }
 
 /* ---- What may be the nearest somewhere in a block ---- */
 
 /** Lists as vxm_label_bvh_list does, below a root and without the nodes of a label (0 = with all). */
 static size_t list_below(const node *at, const vxm_label_bvh *bvh, uint32_t without,
-                         const vxm_bvh_block *block, const vxm_near *nearest, vxm_near *out, size_t room) {
+                         const vxm_bvh_block *block, const vxm_label_hit *nearest, vxm_label_hit *out,
+                         size_t capacity) {
   const node *stack[STACK];
   size_t count = 0;
   int depth = 0;
   for (;;) {
-    vxm_near box = view_box(at, block->middle);
+    vxm_label_hit box = view_box(at, block->middle);
     bool is_met = (without == 0 || at->label != without) && !vxm_bvh_block_excludes(block, nearest, &box);
     if (is_met && at->left) {
       at = &bvh->nodes[at->left];
@@ -199,11 +202,11 @@ static size_t list_below(const node *at, const vxm_label_bvh *bvh, uint32_t with
       continue;
     }
     for (uint32_t i = at->begin; i < at->end && is_met; i++) {
-      vxm_near near = vxm_label_bvh_view(bvh, at->label, i, block->middle);
+      vxm_label_hit near = vxm_label_bvh_view(bvh, at->label, i, block->middle);
       if (vxm_bvh_block_excludes(block, nearest, &near))
         continue;
-      if (count == room)
-        return room + 1;
+      if (count == capacity)
+        return capacity + 1;
       out[count++] = near;
     }
     if (depth == 0)
@@ -212,20 +215,20 @@ static size_t list_below(const node *at, const vxm_label_bvh *bvh, uint32_t with
   }
 }
 
-size_t vxm_label_bvh_list(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
-                          const vxm_near *nearest, vxm_near *out, size_t room) {
+size_t vxm_label_bvh_list(const vxm_label_bvh *bvh, vxm_label_filter filter, const vxm_bvh_block *block,
+                          const vxm_label_hit *nearest, vxm_label_hit *out, size_t capacity) {
   const node *roots[2];
-  int root_count = roots_of(roots, bvh, among);
+  int root_count = roots_of(roots, bvh, filter);
   size_t count = 0;
-  for (int i = 0; i < root_count && count <= room; i++)
-    count += list_below(roots[i], bvh, 0, block, nearest, out + count, room - count);
+  for (int i = 0; i < root_count && count <= capacity; i++)
+    count += list_below(roots[i], bvh, 0, block, nearest, out + count, capacity - count);
   return count;
 }
 
-bool vxm_label_bvh_has_other(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
-                             const vxm_near *nearest) {
+bool vxm_label_bvh_has_other(const vxm_label_bvh *bvh, vxm_label_filter filter, const vxm_bvh_block *block,
+                             const vxm_label_hit *nearest) {
   const node *roots[2];
-  int root_count = roots_of(roots, bvh, among);
+  int root_count = roots_of(roots, bvh, filter);
   bool has_other = false;
   for (int i = 0; i < root_count && !has_other; i++)
     has_other = list_below(roots[i], bvh, nearest->label, block, nearest, NULL, 0) > 0;

@@ -28,20 +28,20 @@ void vxm_label_bvh_destroy(vxm_label_bvh *bvh);
 /** Bytes that the trees of a labelling take at most, also while they are made. */
 uint64_t vxm_label_bvh_bytes(const vxm_face_labels *labelling);
 
-/** Labels that are asked about: two of them, or all where the first is 0. */
-typedef struct vxm_among {
+/** Which labels a search is for: two of them, or all where the first is 0. */
+typedef struct vxm_label_filter {
   uint32_t label[2];
-  uint32_t kept; /**< goes before all others that are as near; 0 = the lowest label does */
-} vxm_among;
+  uint32_t preferred; /**< goes before all others that are as near; 0 = the lowest label does */
+} vxm_label_filter;
 
 /** A triangle as seen from a point. */
-typedef struct vxm_near {
+typedef struct vxm_label_hit {
   float nearness;
   uint32_t label; /**< 0 = nothing */
   uint32_t triangle;
   float distance;
   float gradient[3]; /**< of the distance: from the foot on the triangle to the point, of length 1 */
-} vxm_near;
+} vxm_label_hit;
 
 /** A block of points about a middle. */
 typedef struct vxm_bvh_block {
@@ -56,34 +56,36 @@ typedef struct vxm_bvh_block {
  * @param from what was found nearby, one of those asked about, to begin with; or with label 0 the nearness
  *             that is to be bettered, and if nothing does the label is 0
  */
-vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_among among, const double p[3],
-                               const vxm_near *from);
+vxm_label_hit vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_label_filter filter, const double p[3],
+                                    const vxm_label_hit *from);
 
 /** The nearness of what is at a distance. */
 float vxm_nearness_at(double distance);
 /** The nearness of a triangle. */
 float vxm_label_bvh_nearness(const vxm_label_bvh *bvh, uint32_t triangle, const double p[3]);
 /** A triangle as seen from a point. */
-vxm_near vxm_label_bvh_view(const vxm_label_bvh *bvh, uint32_t label, uint32_t triangle, const double p[3]);
+vxm_label_hit vxm_label_bvh_view(const vxm_label_bvh *bvh, uint32_t label, uint32_t triangle,
+                                 const double p[3]);
 
 /**
  * Whether a triangle, or anything else that is convex, is farther from all points of a block than another
  * one; only the distances and gradients of both, as seen from the middle, are looked at. May be wrong when it
  * says no.
  */
-bool vxm_bvh_block_excludes(const vxm_bvh_block *block, const vxm_near *nearest, const vxm_near *other);
+bool vxm_bvh_block_excludes(const vxm_bvh_block *block, const vxm_label_hit *nearest,
+                            const vxm_label_hit *other);
 
 /** Whether triangles of other labels than that of the nearest one may be nearer somewhere in a block. */
-bool vxm_label_bvh_has_other(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
-                             const vxm_near *nearest);
+bool vxm_label_bvh_has_other(const vxm_label_bvh *bvh, vxm_label_filter filter, const vxm_bvh_block *block,
+                             const vxm_label_hit *nearest);
 
 /**
  * Lists the triangles that may be the nearest somewhere in a block, as seen from its middle.
  *
  * @param nearest to the middle
- * @return how many there are; more than `room` if that does not suffice
+ * @return how many there are; more than `capacity` if that does not suffice
  */
-size_t vxm_label_bvh_list(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
-                          const vxm_near *nearest, vxm_near *out, size_t room);
+size_t vxm_label_bvh_list(const vxm_label_bvh *bvh, vxm_label_filter filter, const vxm_bvh_block *block,
+                          const vxm_label_hit *nearest, vxm_label_hit *out, size_t capacity);
 
 #endif

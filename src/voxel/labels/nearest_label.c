@@ -77,7 +77,7 @@ static void give(const job *j, const voxels *v, uint32_t label) {
 }
 
 /** The label of a single voxel, which goes before others that are as near where labels are open. */
-static uint32_t kept_label(const job *j, const voxels *v) {
+static uint32_t preferred_label(const job *j, const voxels *v) {
   return j->nearest->open ? *value_at(j, v->at[0], v->at[1], v->at[2]) : 0;
 }
 
@@ -115,14 +115,14 @@ static vxm_bvh_block block_of(const job *j, const voxels *v) {
 /** Triangles that may be the nearest to some voxels; of several labels. */
 typedef struct crowd {
   size_t count;
-  vxm_near near[CROWD];
+  vxm_label_hit near[CROWD];
 } crowd;
 
 /** The nearest of a crowd to a single point; of equally near ones it has the label `kept`, or the lowest. */
-static vxm_near nearest_of(const job *j, const crowd *c, const double p[3], uint32_t kept) {
-  vxm_near nearest = {.nearness = INFINITY};
+static vxm_label_hit nearest_of(const job *j, const crowd *c, const double p[3], uint32_t kept) {
+  vxm_label_hit nearest = {.nearness = INFINITY};
   for (size_t i = 0; i < c->count; i++) {
-    const vxm_near *near = &c->near[i];
+    const vxm_label_hit *near = &c->near[i];
     float nearness = vxm_label_bvh_nearness(j->nearest->bvh, near->triangle, p);
     if (nearness > nearest.nearness ||
         (nearness == nearest.nearness &&
@@ -142,13 +142,14 @@ static float reach_nearness(const vxm_bvh_block *block) {
 }
 
 /** Whether there is nothing to give: all faces are too far from all voxels. */
-static bool is_beyond(const job *j, const vxm_bvh_block *block, const vxm_near *nearest) {
+static bool is_beyond(const job *j, const vxm_bvh_block *block, const vxm_label_hit *nearest) {
   return j->nearest->open && (nearest->label == 0 || nearest->nearness > reach_nearness(block));
 }
 
 /** Gives the one label that is the nearest in a block; false if the block has to be cut, as it is too far for
  * some voxels only. */
-static bool give_nearest(const job *j, const voxels *v, const vxm_bvh_block *block, const vxm_near *nearest) {
+static bool give_nearest(const job *j, const voxels *v, const vxm_bvh_block *block,
+                         const vxm_label_hit *nearest) {
   const uint8_t *open = j->nearest->open;
   uint16_t value = (uint16_t)nearest->label;
   if (open && (!open[nearest->label - 1] || each_value(j, v, has_value, &value)))
@@ -160,8 +161,8 @@ static bool give_nearest(const job *j, const voxels *v, const vxm_bvh_block *blo
 }
 
 /** Looks at a crowd from another point, and finds the nearest; which of several makes no difference. */
-static vxm_near look_from(const job *j, crowd *out, const crowd *from, const double p[3]) {
-  vxm_near nearest = {.nearness = INFINITY};
+static vxm_label_hit look_from(const job *j, crowd *out, const crowd *from, const double p[3]) {
+  vxm_label_hit nearest = {.nearness = INFINITY};
   for (size_t i = 0; i < from->count; i++) {
     out->near[i] = vxm_label_bvh_view(j->nearest->bvh, from->near[i].label, from->near[i].triangle, p);
     if (out->near[i].nearness < nearest.nearness)
@@ -172,7 +173,7 @@ static vxm_near look_from(const job *j, crowd *out, const crowd *from, const dou
 }
 
 /** Leaves out what cannot be the nearest in a block; whether more than one label is left. */
-static bool thin_out(crowd *c, const vxm_bvh_block *block, const vxm_near *nearest) {
+static bool thin_out(crowd *c, const vxm_bvh_block *block, const vxm_label_hit *nearest) {
   size_t kept = 0;
   bool is_mixed = false;
   for (size_t i = 0; i < c->count; i++)
@@ -206,13 +207,13 @@ static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
     return;
   vxm_bvh_block block = block_of(j, v);
   if (block.reach == 0) {
-    vxm_near nearest = nearest_of(j, from, block.middle, kept_label(j, v));
+    vxm_label_hit nearest = nearest_of(j, from, block.middle, preferred_label(j, v));
     if (!is_beyond(j, &block, &nearest))
       give_nearest(j, v, &block, &nearest);
     return;
   }
   crowd c;
-  vxm_near nearest = look_from(j, &c, from, block.middle);
+  vxm_label_hit nearest = look_from(j, &c, from, block.middle);
   if (is_beyond(j, &block, &nearest))
     return;
   bool is_mixed = thin_out(&c, &block, &nearest);
@@ -226,20 +227,21 @@ static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
       settle_by_crowd(j, &part, &c);
 }
 
-/** Settles voxels by the nearest label among some; false if they are to be cut first. */
-static bool settle_among(const job *j, const voxels *v, vxm_among among, vxm_near *nearest) {
+/** Settles voxels by the nearest of the labels that a filter lets through; false if they are to be cut first.
+ */
+static bool settle_filtered(const job *j, const voxels *v, vxm_label_filter filter, vxm_label_hit *nearest) {
   const vxm_label_bvh *bvh = j->nearest->bvh;
   vxm_bvh_block block = block_of(j, v);
   if (j->nearest->open && nearest->label == 0)
     nearest->nearness = nextafterf(reach_nearness(&block), INFINITY);
-  *nearest = vxm_label_bvh_nearest(bvh, among, block.middle, nearest);
+  *nearest = vxm_label_bvh_nearest(bvh, filter, block.middle, nearest);
   if (is_beyond(j, &block, nearest))
     return true;
-  if ((block.reach == 0 || !vxm_label_bvh_has_other(bvh, among, &block, nearest)) &&
+  if ((block.reach == 0 || !vxm_label_bvh_has_other(bvh, filter, &block, nearest)) &&
       give_nearest(j, v, &block, nearest))
     return true;
   crowd c;
-  c.count = vxm_label_bvh_list(bvh, among, &block, nearest, c.near, CROWD);
+  c.count = vxm_label_bvh_list(bvh, filter, &block, nearest, c.near, CROWD);
   if (c.count > CROWD)
     return false;
   voxels part;
@@ -250,22 +252,22 @@ static bool settle_among(const job *j, const voxels *v, vxm_among among, vxm_nea
 }
 
 /** Settles voxels, or their eighths. `nearest` is that of a larger block. */
-static void settle(const job *j, const voxels *v, vxm_near nearest) {
-  static const vxm_near nothing = {.nearness = INFINITY};
+static void settle(const job *j, const voxels *v, vxm_label_hit nearest) {
+  static const vxm_label_hit nothing = {.nearness = INFINITY};
   uint16_t held = 0;
   uint32_t label = j->nearest->label;
-  vxm_among among = {{0, 0}, 0};
+  vxm_label_filter filter = {{0, 0}, 0};
   if (!is_asked(j, v))
     return;
   if (j->nearest->open && v->size[0] * v->size[1] * v->size[2] == 1)
-    among.kept = kept_label(j, v);
+    filter.preferred = preferred_label(j, v);
   /* Where the label is weighed against that of the voxels, these must all have the same. */
   bool is_one = label == 0 || each_value(j, v, same_value, &held);
   if (label) {
-    among = (vxm_among){{held, label}, 0};
+    filter = (vxm_label_filter){{held, label}, 0};
     nearest = nothing;
   }
-  if (is_one && settle_among(j, v, among, &nearest))
+  if (is_one && settle_filtered(j, v, filter, &nearest))
     return;
   voxels part;
   for (int n = 0; n < 8; n++)
@@ -288,13 +290,13 @@ void vxm_nearest_label_voxels(const vxm_nearest_label *nearest, const int64_t be
       for (v.at[0] = begin[0]; v.at[0] < end[0]; v.at[0] += BLOCK) {
         for (int a = 0; a < 3; a++)
           v.size[a] = vxm_min(end[a] - v.at[a], BLOCK);
-        settle(&j, &v, (vxm_near){.nearness = INFINITY});
+        settle(&j, &v, (vxm_label_hit){.nearness = INFINITY});
       }
 }
 
 bool vxm_nearest_label_may_reach(const vxm_label_bvh *bvh, const vxm_space *space, const int64_t at[3],
                                  int64_t side) {
-  const vxm_among all = {{0, 0}, 0};
+  const vxm_label_filter all = {{0, 0}, 0};
   const double *size = space->voxel_size;
   double longest = fmax(size[0], fmax(size[1], size[2]));
   vxm_bvh_block block;
@@ -305,6 +307,6 @@ bool vxm_nearest_label_may_reach(const vxm_label_bvh *bvh, const vxm_space *spac
     reach2 += half * half;
   }
   block.reach = sqrt(reach2);
-  vxm_near bound = {.nearness = nextafterf(reach_nearness(&block), INFINITY)};
+  vxm_label_hit bound = {.nearness = nextafterf(reach_nearness(&block), INFINITY)};
   return vxm_label_bvh_nearest(bvh, all, block.middle, &bound).label != 0;
 }
