@@ -7,6 +7,7 @@ from typing import Any, Generic, TypeVar, Union, cast
 import numpy
 
 from . import _core, _values
+from ._call_lock import CallLock
 from ._core import lib
 from ._errors import ArgumentError, KindError
 from ._grid import VoxelGrid
@@ -14,7 +15,6 @@ from ._mesh_sources import MeshLike, as_mesh
 from ._records import CarveReport
 from ._repair import repair as repair_mesh
 from ._sparse import SparseGrid
-from ._turns import Turn
 from ._types import ArrayLike, Floats
 
 Stock = TypeVar("Stock", VoxelGrid, SparseGrid)
@@ -63,7 +63,7 @@ class Carver(Generic[Stock]):
             raise KindError("carve: %s is neither a VoxelGrid nor a SparseGrid" % type(stock).__name__)
         mesh = as_mesh(tool)
         self._tool = repair_mesh(mesh, separate=True) if _values.flag("carve: repair", repair) else mesh
-        self._turn = Turn()
+        self._call_lock = CallLock()
         own: Any = stock
         is_dense = isinstance(stock, VoxelGrid)
         self._stock: Any = VoxelGrid._of_words(own.packed, own._own_space) if is_dense else own
@@ -74,7 +74,7 @@ class Carver(Generic[Stock]):
     def _step(self, function: Any, pose: Union[ArrayLike, Floats]) -> CarveReport:
         matrix = _poses(numpy.asarray(pose)[None])[0]
         report = _core.new("vxm_carve_report")
-        with self._turn:
+        with self._call_lock:
             _core.call(function, report, self._pointer, _core.pointer("double *", matrix))
         return CarveReport._of(report)
 
@@ -93,7 +93,7 @@ class Carver(Generic[Stock]):
     def follow(self, path: ArrayLike) -> int:
         """Moves through all poses of a path, (n, 3), (n, 7), (n, 12), (n, 3, 4) or (n, 4, 4): the voxels removed."""
         report, removed = _core.new("vxm_carve_report"), 0
-        with self._turn:
+        with self._call_lock:
             for matrix in _poses(path):
                 _core.call(lib.vxm_carver_move, report, self._pointer, _core.pointer("double *", matrix))
                 removed += int(report.removed)
@@ -102,7 +102,7 @@ class Carver(Generic[Stock]):
     def grid(self) -> Stock:
         """What is left: a new grid, or octree."""
         made: Any
-        with self._turn:
+        with self._call_lock:
             if isinstance(self._stock, VoxelGrid):
                 made = VoxelGrid._of_words(self._stock.packed, self._stock._own_space)
             else:

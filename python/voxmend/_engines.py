@@ -7,10 +7,10 @@ import dataclasses
 from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
 from . import _core, _values
+from ._call_lock import CallLock, watch_forks
 from ._core import ffi, lib
 from ._errors import ArgumentError, KindError
 from ._records import EngineInfo
-from ._turns import Turn, watch_forks
 
 
 def _info(struct: Any) -> EngineInfo:
@@ -61,7 +61,7 @@ class Engine:
         options.device = self._device
         self._options = options
         self._made: Any = None
-        self._turn = Turn()
+        self._call_lock = CallLock()
         watch_forks(self)
         self._ready()
 
@@ -79,7 +79,7 @@ class Engine:
         if self._made is not None:
             ffi.gc(self._made, None)
             self._made = None
-        self._turn = Turn()
+        self._call_lock = CallLock()
 
     @property
     def info(self) -> EngineInfo:
@@ -88,7 +88,7 @@ class Engine:
 
     @contextlib.contextmanager
     def _in_use(self) -> Iterator[Any]:
-        with self._turn:
+        with self._call_lock:
             yield self._ready()
 
 

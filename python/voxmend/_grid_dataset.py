@@ -10,10 +10,10 @@ import torch
 from torch.utils.data import Dataset
 
 from . import _values
+from ._call_lock import CallLock, watch_forks
 from ._errors import EmptyError
 from ._grid_sources import open_source
 from ._packed import unpack as unpack_rows
-from ._turns import Turn, watch_forks
 from ._types import Array
 
 
@@ -54,16 +54,16 @@ class GridDataset(Dataset):
         self._forget()
 
     def _forget(self) -> None:
-        self._turn = Turn()
+        self._call_lock = CallLock()
         watch_forks(self)
 
     def _after_fork(self) -> None:
-        if self._turn.is_taken():  # by a thread that is not in this process
+        if self._call_lock.is_taken():  # by a thread that is not in this process
             self._forget()
 
     def __getstate__(self) -> Dict[str, Any]:
         state = dict(self.__dict__)
-        del state["_turn"]
+        del state["_call_lock"]
         return state
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
@@ -85,7 +85,7 @@ class GridDataset(Dataset):
         at = numpy.where(at < 0, at + len(self), at)
         nx, ny, nz = self.shape
         bits = numpy.empty((len(at), nx, ny, (nz + 7) // 8), numpy.uint8)
-        with self._turn:
+        with self._call_lock:
             for i, number in enumerate(self._numbers[at].tolist()):
                 bits[i] = self._source.packed(number)
         voxels = bits if self.packed else unpack_rows(bits, nz)[:, None]

@@ -7,11 +7,11 @@ from typing import Any, Dict, Optional, Sequence, Tuple, Type, Union
 import numpy
 
 from . import _core, _values
+from ._call_lock import CallLock, watch_forks
 from ._core import ffi, lib
 from ._errors import ArgumentError, KindError
 from ._mesh import Mesh
 from ._mesh_sources import MeshLike, as_mesh
-from ._turns import Turn, watch_forks
 from ._types import Array, Floats, Uint32s
 from ._work import Rules
 
@@ -58,7 +58,7 @@ class Sampler:
                              mode=mode, surface=surface, method=method, vote=vote, parts=parts, cavities=cavities,
                              thin=thin, engine=engine, coverage=coverage)
         self._meshes: Dict[int, Mesh] = {}
-        self._turn = Turn()
+        self._call_lock = CallLock()
         self._torn = False  # by a fork in the middle of a call
         self._pointer = self._make()
         self.resolution = int(lib.vxm_sampler_space(self._pointer).dims[0])
@@ -108,12 +108,12 @@ class Sampler:
     # ---- Copies, and processes that are forked ----
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        with self._turn:
+        with self._call_lock:
             return _restore, (type(self), self._options, dict(self._meshes))
 
     def _after_fork(self) -> None:
-        if self._turn.is_taken():  # by a thread that is not in this process, in the middle of something
-            self._turn, self._torn = Turn(), True
+        if self._call_lock.is_taken():  # by a thread that is not in this process, in the middle of something
+            self._call_lock, self._torn = CallLock(), True
 
     def _ready(self) -> Any:
         """The library's sampler; made anew where a fork came upon it in the middle of a call."""
@@ -154,7 +154,7 @@ class Sampler:
         `voxmend.repair(mesh, separate=True)`."""
         own = None if mesh is None else as_mesh(mesh)
         number = _values.whole("sampler: model", model, 0, _UINT32_MAX)
-        with self._turn:
+        with self._call_lock:
             at = self._ready()
             try:
                 _core.call(lib.vxm_sampler_put, at, number, ffi.NULL if own is None else own._pointer)
@@ -197,7 +197,7 @@ class Sampler:
         if out.shape != shape or out.dtype != kind or not out.flags.carray:
             raise ArgumentError("sampler: out is not a writeable C-contiguous array of %s of shape %s" %
                                 (numpy.dtype(kind).name, shape))
-        with self._turn:
+        with self._call_lock:
             _core.call(lib.vxm_sampler_batch, _core.pointer("void *", out), self._ready(),
                        _core.pointer("vxm_variant *", names), len(names), _VOXELS[dtype])
         return out
@@ -225,7 +225,7 @@ class Sampler:
         out = _core.new("vxm_pose")
         variant = ffi.new("vxm_variant *", {name: _values.whole("sampler: " + name, value, 0, _UINT32_MAX)
                                             for name, value in (("model", model), ("epoch", epoch), ("index", index))})
-        with self._turn:
+        with self._call_lock:
             _core.call(lib.vxm_sampler_pose, out, self._ready(), variant)
         shapes = {"transform": (3, 4), "rotation": (3, 3), "scale": (3,), "shift": (3,)}
         return {key: numpy.array(list(getattr(out, key))).reshape(shape) for key, shape in shapes.items()}

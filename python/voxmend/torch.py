@@ -22,6 +22,7 @@ import torch
 from torch.utils.data import Dataset, IterableDataset, get_worker_info
 
 from . import __version__, _core, _values
+from ._call_lock import CallLock, watch_forks
 from ._core import ffi
 from ._errors import ArgumentError, EmptyError
 from ._grid_dataset import GridDataset, order_by_groups
@@ -29,7 +30,6 @@ from ._mesh import Mesh
 from ._mesh_sources import load
 from ._repair import repair
 from ._sampler import Sampler
-from ._turns import Turn, watch_forks
 from ._types import Array
 
 __all__ = ["EXTENSIONS", "GridDataset", "IterableVoxelDataset", "VoxelDataset", "unpack"]
@@ -87,16 +87,16 @@ class VoxelDataset(Dataset):
     def _forget(self) -> None:
         self._sampler: Optional[Sampler] = None
         self._held: "collections.OrderedDict[int, int]" = collections.OrderedDict()  # model: bytes
-        self._turn = Turn()
+        self._call_lock = CallLock()
         watch_forks(self)
 
     def _after_fork(self) -> None:
-        if self._turn.is_taken():  # by a thread that is not in this process
+        if self._call_lock.is_taken():  # by a thread that is not in this process
             self._forget()
 
     def __getstate__(self) -> Dict[str, Any]:
         state = dict(self.__dict__)
-        for name in ("_sampler", "_held", "_turn"):  # of this process
+        for name in ("_sampler", "_held", "_call_lock"):  # of this process
             state.pop(name)
         return state
 
@@ -165,7 +165,7 @@ class VoxelDataset(Dataset):
         at = numpy.where(at < 0, at + len(self), at)
         models, indices = at % len(self.files), at // len(self.files)
         names = numpy.stack([models, numpy.full(len(at), self.epoch if epoch is None else epoch), indices], axis=1)
-        with self._turn:
+        with self._call_lock:
             sampler = self._need(models.tolist())
             voxels = sampler.batch(names.reshape(-1, 3), dtype="bits" if self.packed else "float32")
         return torch.from_numpy(voxels), torch.from_numpy(numpy.asarray(self.labels, numpy.int64)[models])

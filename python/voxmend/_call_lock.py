@@ -10,7 +10,7 @@ from typing import Any
 from ._errors import BusyError
 
 
-class Turn:
+class CallLock:
     """Lets one thread at a time in, others wait; a thread that is inside already is refused rather than stuck."""
 
     def __init__(self) -> None:
