@@ -12,7 +12,7 @@ size_t vxm_unpack_row_bytes(vxm_voxel_format voxels, int64_t dim);
  * Writes `rows` rows of `dim` voxels one after another.
  *
  * @param words each row in whole words, its unused bits zero
- * @param past  floats go past the cache, as they are so many that they would not stay in it
+ * @param streaming  floats go past the cache, as they are so many that they would not stay in it
  */
 void vxm_unpack_row(void *out, vxm_voxel_format voxels, const uint64_t *words, size_t rows, int64_t dim,
                     bool streaming);
