@@ -19,8 +19,8 @@
  *    of the area of the rest of their group: one side of it would leave the body open. A chair that is mostly
  *    sheets of two sides does not lose them.
  *  - Else bodies share it, and neither is closed without it. Where the group is balanced, as many copies stay
- *    as there are more of one orientation than of the other, so that the winding number of no point changes.
- * If there are as many of one as of the other, one of each stays.
+ *    as there are more of one orientation than of the other: that changes no winding number. If there are as
+ *    many of one as of the other, one of each stays.
  *  - Where the group is closed but not balanced (faces are turned against each other), all copies of one
  *    orientation stay if two bodies lie on the same side of them; else one does.
  *
