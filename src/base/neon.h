@@ -21,6 +21,14 @@ static inline __attribute__((always_inline)) unsigned vxm_neon_signs2(int64x2_t 
   return (unsigned)(vgetq_lane_u64(bits, 0) | vgetq_lane_u64(bits, 1) << 1);
 }
 
+/** Bit i is the lowest bit of number i of both, one behind the other. */
+static inline __attribute__((always_inline)) unsigned vxm_neon_lowest16(int16x8_t low, int16x8_t high) {
+  const int8x16_t places = {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
+  uint8x16_t bits = vreinterpretq_u8_s8(vcombine_s8(vmovn_s16(low), vmovn_s16(high)));
+  bits = vshlq_u8(vandq_u8(bits, vdupq_n_u8(1)), places);
+  return (unsigned)vaddv_u8(vget_low_u8(bits)) | (unsigned)vaddv_u8(vget_high_u8(bits)) << 8;
+}
+
 /** The first two of four ints as doubles, which hold them exactly. */
 static inline __attribute__((always_inline)) float64x2_t vxm_neon_doubles(int32x4_t numbers) {
   return vcvtq_f64_s64(vmovl_s32(vget_low_s32(numbers)));

@@ -67,18 +67,26 @@ uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_
   return sparse->bricks[index];
 }
 
-const vxm_octree_node *vxm_octree_low_node(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
+const vxm_octree_node *vxm_octree_below(const vxm_sparse *sparse, int level, const vxm_octree_node *node,
+                                        int64_t i, int64_t j, int64_t k) {
   static const vxm_octree_node full = {.full = ~UINT64_C(0)}, empty = {.full = 0};
-  size_t index = 0;
-  for (int l = sparse->levels - 1; l > 0; l--) {
-    const vxm_octree_node *node = &sparse->nodes[l][index];
-    int shift = 2 * l + 2;
-    unsigned child = vxm_octree_child((unsigned)(i >> shift), (unsigned)(j >> shift), (unsigned)(k >> shift));
-    if (!(node->mixed >> child & 1))
-      return node->full >> child & 1 ? &full : &empty;
-    index = vxm_octree_index(node, child);
-  }
-  return &sparse->nodes[0][index];
+  int shift = 2 * level + 2;
+  unsigned child = vxm_octree_child((unsigned)(i >> shift), (unsigned)(j >> shift), (unsigned)(k >> shift));
+  if (!(node->mixed >> child & 1))
+    return node->full >> child & 1 ? &full : &empty;
+  return &sparse->nodes[level - 1][vxm_octree_index(node, child)];
+}
+
+const vxm_octree_node *vxm_octree_node_at(const vxm_sparse *sparse, int level, int64_t i, int64_t j,
+                                          int64_t k) {
+  const vxm_octree_node *node = sparse->nodes[sparse->levels - 1];
+  for (int l = sparse->levels - 1; l > level; l--)
+    node = vxm_octree_below(sparse, l, node, i, j, k);
+  return node;
+}
+
+const vxm_octree_node *vxm_octree_low_node(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
+  return vxm_octree_node_at(sparse, 0, i, j, k);
 }
 
 bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {

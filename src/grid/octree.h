@@ -91,8 +91,14 @@ void vxm_octree_walk_layers(const vxm_sparse *sparse, int axis, int64_t begin, i
 
 /** The brick with voxel (i,j,k), which lies within the dimensions. */
 uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
-/** The node of level 0 with voxel (i,j,k), which lies within the dimensions; or one that is as empty or as
+/** The node of a level with voxel (i,j,k), which lies within the dimensions; or one that is as empty or as
  * full, where a higher one is. */
+const vxm_octree_node *vxm_octree_node_at(const vxm_sparse *sparse, int level, int64_t i, int64_t j,
+                                          int64_t k);
+/** The same of the level below that of a node with the voxel, which is above 0. */
+const vxm_octree_node *vxm_octree_below(const vxm_sparse *sparse, int level, const vxm_octree_node *node,
+                                        int64_t i, int64_t j, int64_t k);
+/** The same of level 0. */
 const vxm_octree_node *vxm_octree_low_node(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
 /** Whether voxel (i,j,k) is set; false outside. */
 bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/threads.h"
+#include "voxel/sparse/flipped_nodes.h"
 #include "voxel/sparse/sparse.h"
 #include "voxel/sparse/strip_flips.h"
 #include "voxel/winding/chain_flips.h"
@@ -14,23 +15,17 @@ enum {
 
 /** What a thread works with. */
 typedef struct scratch {
-  vxm_strip_flip *flips; /**< of a slab, strip after strip */
-  uint32_t *parts;
+  vxm_flipped_nodes flipped; /**< of a slab, or of one strip; without flips between these */
+  /* Of a slab that is sorted, strip after strip: */
+  uint32_t *flips, *parts;
   size_t capacity;
-  vxm_strip_ends *ends; /**< of each strip; in the end behind its flips */
-  /* Of a strip, per brick in the order of vxm_strip_add_node, node after node; clear between strips. */
-  uint64_t *flipped, *united;
-  uint8_t *has_flips; /**< per node, in whole words */
+  uint32_t *ends; /**< of each strip; in the end behind its flips */
+  /* Of a strip, node after node; clear between strips. */
+  uint64_t *united; /**< per brick in the order of vxm_strip_add_node */
   /* A bit per node: whether something is united in it, whether all of it is full. */
   uint64_t *is_united, *is_full;
   vxm_chain_flips wound; /**< of the chain, as of a part behind all others */
 } scratch;
-
-/** Where a row of a strip lies: in which row of bricks in the order of vxm_strip_add_node, and at which bits
- * of them. */
-typedef struct strip_place {
-  uint8_t row, shift;
-} strip_place;
 
 typedef struct sparse_state {
   vxm_octree_builder *builder;
@@ -44,10 +39,10 @@ typedef struct sparse_state {
   size_t nodes;     /**< of a strip */
   size_t first;     /**< slab of the window */
   bool many;        /**< parts, or a part and the chain, are united, or rounds */
+  bool sorted;      /**< by strip and part, before nodes are flipped: else those of a slab are at once */
   bool again;       /**< there may be something in the strips already */
   uint64_t last[4]; /**< per x: the voxels of a brick of the last node that the space has */
   scratch *scratches;
-  strip_place places[256];
   vxm_task_progress watch;
 } sparse_state;
 
@@ -68,7 +63,7 @@ static bool reserve(sparse_state *state, scratch *d, size_t count) {
   d->capacity = 0;
   size_t wanted = count + count / 4;
   d->flips = vxm_alloc(context, wanted, sizeof *d->flips, &local);
-  d->parts = state->many ? vxm_alloc(context, wanted, sizeof *d->parts, &local) : NULL;
+  d->parts = vxm_alloc(context, wanted, sizeof *d->parts, &local);
   if (local.code == VXM_OK)
     d->capacity = wanted;
   else
@@ -85,13 +80,13 @@ static vxm_crossing_bin_piece piece_of_chain(const scratch *d) {
 static size_t count_flips(const sparse_state *state, scratch *d, size_t slab) {
   vxm_crossing_bin_piece piece = piece_of_chain(d);
   memset(d->ends, 0, state->builder->across * sizeof *d->ends);
-  size_t total = vxm_strip_flips_count(d->ends, &piece, state->row_shift, state->many);
+  size_t total = vxm_strip_flips_count(d->ends, &piece, state->row_shift);
   for (size_t w = 0; w < state->bins->workers; w++) {
     vxm_crossing_bin_reader reader =
         vxm_crossing_bin_read(vxm_crossing_bins_at(state->bins, w, 0, slab), !state->many);
     while (reader.part != VXM_BIN_NONE)
       while (vxm_crossing_bin_next(&reader, &piece))
-        total += vxm_strip_flips_count(d->ends, &piece, state->row_shift, state->many);
+        total += vxm_strip_flips_count(d->ends, &piece, state->row_shift);
   }
   return total;
 }
@@ -121,12 +116,11 @@ static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
   if (!take_chain(state, d, slab) || !reserve(state, d, count_flips(state, d, slab)))
     return false;
   uint32_t sum = 0;
-  for (size_t s = 0; s < state->builder->across; s++)
-    for (size_t k = 0; k < VXM_STRIP_STREAMS; k++) {
-      uint32_t count = d->ends[s][k];
-      d->ends[s][k] = sum;
-      sum += count;
-    }
+  for (size_t s = 0; s < state->builder->across; s++) {
+    uint32_t count = d->ends[s];
+    d->ends[s] = sum;
+    sum += count;
+  }
   for (size_t w = 0; w < workers; w++)
     reader[w] = vxm_crossing_bin_read(vxm_crossing_bins_at(state->bins, w, 0, slab), !state->many);
   for (;;) {
@@ -143,6 +137,27 @@ static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
   vxm_crossing_bin_piece chain = piece_of_chain(d);
   put_piece(state, d, &chain, state->job->part_end);
   return true;
+}
+
+static void note_failure(sparse_state *state, vxm_status status) {
+  if (status != VXM_OK)
+    atomic_store_explicit(&state->builder->failed, (int)status, memory_order_relaxed);
+}
+
+/** Flips the nodes of a slab, which has one part; false if memory ran out. */
+static bool flip_slab(sparse_state *state, scratch *d, size_t slab) {
+  vxm_status status = VXM_OK;
+  for (size_t w = 0; w < state->bins->workers && status == VXM_OK; w++) {
+    vxm_crossing_bin_reader reader =
+        vxm_crossing_bin_read(vxm_crossing_bins_at(state->bins, w, 0, slab), true);
+    vxm_crossing_bin_piece piece;
+    while (reader.part != VXM_BIN_NONE)
+      while (status == VXM_OK && vxm_crossing_bin_next(&reader, &piece))
+        status = piece.is_bitmap ? vxm_flipped_nodes_flip_bitmap(&d->flipped, piece.data, piece.count)
+                                 : vxm_flipped_nodes_flip(&d->flipped, piece.data, piece.count);
+  }
+  note_failure(state, status);
+  return status == VXM_OK;
 }
 
 /* ---- A part of a strip ---- */
@@ -192,36 +207,15 @@ static void put_gap(sparse_state *state, scratch *d, size_t worker, size_t begin
   }
 }
 
-/** Flips voxels of a strip, and notes which nodes have flips. */
-static void flip_voxels(const strip_place *restrict places, uint64_t *restrict flipped,
-                        uint8_t *restrict has_flips, const vxm_strip_flip *restrict flips, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    vxm_strip_flip f = flips[i];
-    strip_place place = places[f & 255];
-    flipped[(f >> 10) * 16 + place.row] ^= (UINT64_C(15) << (f >> 8 & 3) & 15) << place.shift;
-    has_flips[f >> 12] = 1;
-  }
-}
-
-/** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
-static uint64_t fold_flips(sparse_state *state, scratch *d, size_t worker, const vxm_strip_flip *flips,
-                           size_t count) {
+/** The flips of one part in a strip, the number of which is that among the flipped nodes: the prefix XOR
+ * along x, node after node. Returns the OR of what is inside. */
+static uint64_t fold_flips(sparse_state *state, scratch *d, size_t worker, size_t strip) {
   uint64_t inside[16] = {0}, any = 0;
   size_t done = 0;
-  flip_voxels(state->places, d->flipped, d->has_flips, flips, count);
-  for (size_t x = 0; x < state->nodes; x++) {
-    uint64_t eight;
-    memcpy(&eight, d->has_flips + x, sizeof eight);
-    if (x % 8 == 0 && eight == 0) {
-      x += 7;
-      continue;
-    }
-    if (!d->has_flips[x])
-      continue;
-    d->has_flips[x] = 0;
+  for (size_t x = 0; vxm_flipped_nodes_next(&d->flipped, strip, &x); x++) {
     put_gap(state, d, worker, done, x, inside);
     uint64_t bricks[VXM_STRIP_BRICKS], masks[2];
-    any |= state->kernels->fold_node(bricks, d->flipped + x * VXM_STRIP_BRICKS, inside, masks);
+    any |= state->kernels->fold_node(bricks, vxm_flipped_nodes_take(&d->flipped, strip, x), inside, masks);
     if (state->many || x == state->nodes - 1)
       put_node(state, d, worker, x, bricks);
     else
@@ -272,22 +266,24 @@ static void touch(const sparse_state *state, uint32_t part) {
   atomic_store_explicit(&state->job->has_voxels[part], 1, memory_order_relaxed);
 }
 
-static void do_strip(sparse_state *state, scratch *d, size_t worker, size_t y, size_t z, size_t begin,
-                     size_t end) {
-  vxm_strip *strip = &state->builder->strips[z * state->builder->across + y];
+static void do_flipped_strip(sparse_state *state, scratch *d, size_t worker, size_t y, size_t z) {
+  if (fold_flips(state, d, worker, y))
+    touch(state, 0);
+  vxm_strip_end(state->builder, worker, y, z);
+}
+
+/** A strip, whose sorted flips are begin..end-1. */
+static void do_sorted_strip(sparse_state *state, scratch *d, size_t worker, size_t y, size_t z, size_t begin,
+                            size_t end) {
   if (state->again)
-    take_strip(d, strip);
-  if (!state->many) {
-    if (fold_flips(state, d, worker, d->flips + begin, end - begin))
-      touch(state, 0);
-  }
-  for (size_t first = begin; state->many && first < end;) {
-    size_t behind = first + 1;
-    while (behind < end && d->parts[behind] == d->parts[first])
+    take_strip(d, &state->builder->strips[z * state->builder->across + y]);
+  for (size_t first = begin, behind; first < end; first = behind) {
+    for (behind = first + 1; behind < end && d->parts[behind] == d->parts[first];)
       behind++;
-    if (fold_flips(state, d, worker, d->flips + first, behind - first))
+    note_failure(state, vxm_flipped_nodes_flip_strip(&d->flipped, d->flips + first, behind - first));
+    if (fold_flips(state, d, worker, 0))
       touch(state, d->parts[first]);
-    first = behind;
+    vxm_flipped_nodes_end(&d->flipped);
   }
   if (state->many)
     put_united(state, d, worker);
@@ -297,15 +293,19 @@ static void do_strip(sparse_state *state, scratch *d, size_t worker, size_t y, s
 static void do_slab(size_t task, int worker, void *payload) {
   sparse_state *state = payload;
   scratch *d = &state->scratches[worker];
-  if (vxm_task_progress_stopped(&state->watch, worker) || !sort_flips(state, d, task))
+  if (vxm_task_progress_stopped(&state->watch, worker) ||
+      !(state->sorted ? sort_flips(state, d, task) : flip_slab(state, d, task)))
     return;
   size_t begin = 0;
   for (size_t y = 0; y < state->builder->across; y++) {
-    size_t end = d->ends[y][VXM_STRIP_STREAMS - 1];
+    size_t end = state->sorted ? d->ends[y] : 0;
     if (end > begin)
-      do_strip(state, d, (size_t)worker, y, state->first + task, begin, end);
+      do_sorted_strip(state, d, (size_t)worker, y, state->first + task, begin, end);
     begin = end;
+    if (!state->sorted && vxm_flipped_nodes_touch_end(&d->flipped, y))
+      do_flipped_strip(state, d, (size_t)worker, y, state->first + task);
   }
+  vxm_flipped_nodes_end(&d->flipped);
   vxm_task_progress_step(&state->watch);
 }
 
@@ -335,11 +335,10 @@ static void shape(sparse_state *state) {
   for (int b = 0; b < 4; b++)
     state->last[b] =
         UINT64_C(0x1111111111111111) * vxm_low_bits((unsigned)vxm_min(vxm_max(left - 4 * b, 0), 4));
-  for (unsigned i = 0; i < 256; i++) {
-    unsigned y = i >> 4, z = i & 15;
-    state->places[i].row = (uint8_t)((y >> 2 & 1) | (z >> 1 & 2) | (y >> 1 & 4) | (z & 8));
-    state->places[i].shift = (uint8_t)(16 * (z & 3) + 4 * (y & 3));
-  }
+  /* Slots of all nodes of a slab are few bytes each, but of the largest spaces very many. */
+  const uint64_t most = UINT64_C(1) << 23, left_here = vxm_memory_left(state->builder->context) / 8;
+  uint64_t bytes = vxm_flipped_nodes_bytes(state->builder->across, state->row_shift);
+  state->sorted = state->many || bytes > most || bytes * state->builder->workers > left_here;
 }
 
 static vxm_status make_scratches(sparse_state *state, size_t workers, vxm_error *error) {
@@ -349,10 +348,10 @@ static vxm_status make_scratches(sparse_state *state, size_t workers, vxm_error 
   state->scratches = vxm_calloc(context, workers, sizeof *state->scratches, &local);
   for (size_t w = 0; w < workers && local.code == VXM_OK; w++) {
     scratch *d = &state->scratches[w];
-    d->ends = vxm_alloc(context, state->builder->across, sizeof *d->ends, &local);
-    d->flipped = vxm_calloc(context, words, sizeof *d->flipped, &local);
+    vxm_flipped_nodes_create(&d->flipped, context, state->sorted ? 1 : state->builder->across,
+                             state->row_shift, &local);
+    d->ends = state->sorted ? vxm_alloc(context, state->builder->across, sizeof *d->ends, &local) : NULL;
     d->united = state->many ? vxm_calloc(context, words, sizeof *d->united, &local) : NULL;
-    d->has_flips = vxm_calloc(context, 64 * marks, sizeof *d->has_flips, &local);
     d->is_united = vxm_calloc(context, 2 * marks, sizeof *d->is_united, &local);
     d->is_full = d->is_united ? d->is_united + marks : NULL;
   }
@@ -368,9 +367,8 @@ static void free_scratches(sparse_state *state, size_t workers) {
     vxm_free(context, d->flips);
     vxm_free(context, d->parts);
     vxm_free(context, d->ends);
-    vxm_free(context, d->flipped);
+    vxm_flipped_nodes_destroy(&d->flipped);
     vxm_free(context, d->united);
-    vxm_free(context, d->has_flips);
     vxm_free(context, d->is_united);
     vxm_chain_flips_free(&d->wound, context);
   }

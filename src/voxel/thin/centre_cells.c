@@ -19,12 +19,27 @@ vxm_kept_bricks *vxm_view_kept_bricks(const vxm_view *view) {
   return &kept;
 }
 
+/** The node of level 1 with a voxel of an octree that has so many levels. */
+static const vxm_octree_node *kept_high(vxm_kept_bricks *kept, const vxm_sparse *octree,
+                                        const int64_t of[3]) {
+  const int64_t low = (1 << VXM_KEPT_BITS) - 1, x = of[0] >> 6, y = of[1] >> 6, z = of[2] >> 6;
+  size_t at = (size_t)((z & low) << 2 * VXM_KEPT_BITS | (y & low) << VXM_KEPT_BITS | (x & low));
+  uint64_t number = (uint64_t)((z << VXM_VIEW_AXIS_BITS | y) << VXM_VIEW_AXIS_BITS | x) + 1;
+  if (kept->high_number[at] != number) {
+    kept->high_number[at] = number;
+    kept->highs[at] = vxm_octree_node_at(octree, 1, of[0], of[1], of[2]);
+  }
+  return kept->highs[at];
+}
+
 const vxm_octree_node *vxm_kept_node_fetch(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit,
                                            size_t at) {
   const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1;
+  const int64_t of[3] = {bit & mask, bit >> VXM_VIEW_AXIS_BITS & mask, bit >> 2 * VXM_VIEW_AXIS_BITS & mask};
   kept->node_number[at] = vxm_node_number(bit);
-  kept->nodes[at] = vxm_octree_low_node(octree, bit & mask, bit >> VXM_VIEW_AXIS_BITS & mask,
-                                        bit >> 2 * VXM_VIEW_AXIS_BITS & mask);
+  kept->nodes[at] = octree->levels == 1
+                        ? octree->nodes[0]
+                        : vxm_octree_below(octree, 1, kept_high(kept, octree, of), of[0], of[1], of[2]);
   return kept->nodes[at];
 }
 

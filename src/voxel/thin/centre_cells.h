@@ -108,6 +108,8 @@ typedef struct vxm_kept_bricks {
   uint64_t number[VXM_KEPT_BRICKS], bits[VXM_KEPT_BRICKS];
   uint64_t node_number[VXM_KEPT_BRICKS];
   const vxm_octree_node *nodes[VXM_KEPT_BRICKS]; /**< of level 0 */
+  uint64_t high_number[VXM_KEPT_BRICKS];
+  const vxm_octree_node *highs[VXM_KEPT_BRICKS]; /**< of level 1 */
 } vxm_kept_bricks;
 
 /** Those of this thread. */

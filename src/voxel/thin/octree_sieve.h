@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Puts aside triangles that cross no link without a voxel, in an octree: brick by brick.
+ * Puts aside triangles that cross no link without a voxel, in an octree: node by node, and brick by brick.
  *
  * A link that a triangle crosses has an end on its inner side, a voxel that lies between the plane and a
  * parallel one, a voxel further along the axis along which the normal is longest. Nearly always all of these
