@@ -38,12 +38,15 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   return status;
 }
 
-/** Lists some faces of each patch, spread over it, and all that count. @param size scratch per face, twice */
+/** Lists some faces of each patch, spread over it, and all that count, those around a group too. @param size
+ * scratch per face, twice */
 static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_face_set_side *sets, size_t *size) {
   size_t faces = l->state->soup->face_count, count = 0, *seen = size + faces;
   for (size_t f = 0; f < faces; f++) {
     int64_t surplus = vxm_layers_surplus(l, f);
-    bound[f] = l->asked[l->groups->of_face[f]] && surplus > 0 && l->copies[f].rank < (uint64_t)surplus;
+    bound[f] = l->groups->groups[l->groups->of_face[f]].balanced
+                   ? surplus > 0 && l->copies[f].rank < (uint64_t)surplus
+                   : l->copies[f].first == f;
     size[vxm_set_of(l->patch, f)] += is_asked(l, f);
   }
   for (size_t f = 0; f < faces; f++) {
@@ -89,7 +92,7 @@ static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *
   size_t count = list_samples(l, bound, sets, size);
   vxm_status status = vxm_ask(l->state->context, error);
   if (status == VXM_OK)
-    status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, error);
+    status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, true, error);
   if (status != VXM_OK)
     return status;
   qsort(sets, count, sizeof *sets, by_set_then_face);

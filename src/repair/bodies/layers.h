@@ -16,8 +16,8 @@ typedef struct vxm_layers {
      the winding number is one and the same, unless another face cuts through it. */
   size_t
       *patch; /**< per face that stands for its kind: another one of its patch, or itself; see vxm_set_of */
-  int64_t *front; /**< per face that stands for a patch: the winding number where its normals point. Behind it
-                     is more by vxm_layers_surplus */
+  int64_t *front; /**< per face that stands for a patch: the winding number where its normals point, of its
+                     group and of what lies around all of that. Behind it is more by vxm_layers_surplus */
   bool *known;    /**< the same: `front` is */
 } vxm_layers;
 

@@ -298,7 +298,7 @@ static bool is_asked(const deciding *d, size_t face) {
 /** Asks one face of a fin, or all of them, whether they lie within the solid: all have to. */
 static vxm_status ask(deciding *d, vxm_face_set_side *sets, size_t asked, const uint8_t *bound,
                       uint8_t *within, vxm_error *error) {
-  vxm_status status = vxm_face_set_sides_find(sets, asked, d->state, &d->groups, bound, error);
+  vxm_status status = vxm_face_set_sides_find(sets, asked, d->state, &d->groups, bound, false, error);
   for (size_t i = 0; status == VXM_OK && i < asked; i++)
     within[sets[i].set] = 1;
   for (size_t i = 0; status == VXM_OK && i < asked; i++) {
