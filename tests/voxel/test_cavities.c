@@ -54,6 +54,18 @@ static vxm_soup *faces_of(vxm_context *context, const block *b, const manner *ho
   return soup;
 }
 
+/** Puts the faces, all of which have four corners, in another order. */
+static void shuffle(vxm_soup *soup, vxm_rng *rng) {
+  for (size_t i = soup->face_count - 1; i > 0; i--) {
+    size_t j = (size_t)vxm_rng_below(rng, i + 1);
+    for (size_t c = 0; c < 4; c++) {
+      uint32_t kept = soup->indices[4 * i + c];
+      soup->indices[4 * i + c] = soup->indices[4 * j + c];
+      soup->indices[4 * j + c] = kept;
+    }
+  }
+}
+
 static double volume_of(const vxm_soup *soup) {
   double volume = 0;
   for (size_t f = 0; f < soup->face_count; f++) {
@@ -66,11 +78,24 @@ static double volume_of(const vxm_soup *soup) {
   return volume;
 }
 
+/** The same for a repair that leaves bodies together, and loses none. */
+static void assert_repaired(const vxm_soup *soup, double volume, uint64_t seed) {
+  vxm_soup *clean;
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+  assert_int_equal(vxm_repair_run(&clean, &report, soup, NULL, NULL), VXM_OK);
+  if (report.lost_parts != 0 || report.opened_parts != 0 || fabs(volume_of(clean) - volume) > 1e-6)
+    fail_msg("seed %llu: %lld parts are lost, the volume is %g instead of %g", (unsigned long long)seed,
+             (long long)report.lost_parts, volume_of(clean), volume);
+  vxm_soup_destroy(clean);
+}
+
 static void assert_cells(vxm_context *context, uint64_t seed, const manner *how, size_t fillings) {
   vxm_rng rng = {seed};
   block b;
   make_block(&b, &rng, fillings);
   vxm_soup *soup = faces_of(context, &b, how, seed % 4 == 0, &rng), *prepared;
+  if (!how->triangles && seed % 2 == 0)
+    shuffle(soup, &rng);
   assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
   int wrong = count_wrong(prepared, how, b.wanted);
   double volume = 0;
@@ -79,6 +104,7 @@ static void assert_cells(vxm_context *context, uint64_t seed, const manner *how,
   if (wrong > 0 || fabs(volume_of(prepared) - volume) > 1e-6)
     fail_msg("seed %llu: %d voxels are wrong, the volume is %g instead of %g", (unsigned long long)seed,
              wrong, volume_of(prepared), volume);
+  assert_repaired(soup, volume, seed);
   vxm_soup_destroy(prepared);
   vxm_soup_destroy(soup);
 }
@@ -111,6 +137,19 @@ static void voids_of_an_open_block_stay(void **state) {
   }
 }
 
+/** Those that fill a void have the same faces as that; where they fill it altogether these are all it has. */
+static void fillings_stay(void **state) {
+  for (uint64_t seed = 1; seed <= rounds_of(300); seed++)
+    assert_cells(*state, seed, &squares, 1 + seed % FILLINGS);
+}
+
+static void fillings_stay_in_triangles(void **state) {
+  manner how = squares;
+  how.triangles = true;
+  for (uint64_t seed = 1; seed <= rounds_of(200); seed++)
+    assert_cells(*state, seed, &how, 1 + seed % FILLINGS);
+}
+
 static int make_context(void **state) {
   *state = context_of_threads(2);
   return 0;
@@ -123,6 +162,8 @@ static int drop_context(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(voids_stay), cmocka_unit_test(voids_stay_in_triangles),
-                                     cmocka_unit_test(voids_of_an_open_block_stay)};
+                                     cmocka_unit_test(voids_of_an_open_block_stay),
+                                     cmocka_unit_test(fillings_stay),
+                                     cmocka_unit_test(fillings_stay_in_triangles)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

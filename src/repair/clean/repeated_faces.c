@@ -27,6 +27,7 @@ typedef struct fin {
   bool touches;    /**< along an edge there are other faces */
   bool hangs;      /**< along such an edge an odd number of its kinds end */
   bool rimmed;     /**< the same along an edge without others */
+  bool ends;       /**< along such an edge one of them ends alone */
   bool unbalanced; /**< of its kinds, taken once, more sides run along an edge one way than the other */
   int overlaps; /**< edges where the other faces lie on one side of it, less those where they lie on both */
   uint32_t least, most; /**< copies of any of its kinds that stay */
@@ -107,6 +108,7 @@ static void look_at_kind(deciding *d, size_t face) {
     f->touches |= others;
     f->hangs |= odd && others;
     f->rimmed |= odd && !others;
+    f->ends |= d->single[place] == 1 && !others;
     f->unbalanced |= d->balance[place] != 0;
   }
 }
@@ -228,6 +230,14 @@ static bool bounds(const deciding *d, size_t face) {
   return stays(d, face) && (k == PLAIN || (k == SAME_WAY && balanced));
 }
 
+/** Whether a face belongs to sheets that are closed for themselves: they may be a body that lies at the solid
+ * with a face or two, so that one face does not tell of the others; or cores with the cavity that they fill,
+ * and walls between them. */
+static bool may_be_body(const deciding *d, size_t face) {
+  const fin *f = &d->fins[vxm_set_of(d->parent, face)];
+  return d->kinds[face] == SHEET && !f->hangs && (f->touches ? !f->rimmed : !f->ends);
+}
+
 /** Decides about the fins, of which `within` are inside the solid. */
 static void settle(deciding *d, const uint8_t *within) {
   for (size_t face = 0; face < d->soup->face_count; face++) {
@@ -280,17 +290,12 @@ static bool may_be_wall(const deciding *d, size_t face) {
          d->fins[vxm_set_of(d->parent, face)].most == 2;
 }
 
-/** Whether a face belongs to sheets that are closed for themselves: they may be a body that lies at the solid
- * with a face or two, so that one face does not tell of the others. */
-static bool may_be_body(const deciding *d, size_t face) {
-  const fin *f = &d->fins[vxm_set_of(d->parent, face)];
-  return d->kinds[face] == SHEET && !f->hangs && !f->rimmed;
-}
-
 static bool is_asked(const deciding *d, size_t face) {
   size_t root = vxm_set_of(d->parent, face);
-  if (d->kinds[face] == PLAIN || !d->fins[root].touches)
+  if (d->kinds[face] == PLAIN)
     return false;
+  if (!d->fins[root].touches)
+    return may_be_body(d, face);
   bool whole = d->kinds[face] == SHEET || !d->groups.groups[d->groups.of_face[face]].balanced;
   return whole ? root == face || may_be_body(d, face) : may_be_wall(d, face);
 }

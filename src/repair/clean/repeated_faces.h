@@ -14,8 +14,8 @@
  * faces that edges connect is judged as a whole:
  *  - If it is closed for itself, as a body that is there twice, one of each of its faces stays.
  *  - If it lies within the solid on both sides, as the wall between two rooms, or between a block and what
- *    fills a void of it in part, all of it goes; of what was drawn from both sides and is closed for itself,
- *    only if each of its faces lies there. Groups that lie around all of this one count (face_set_sides.h).
+ *    fills a void of it, all of it goes; of what was drawn from both sides and is closed for itself, only if
+ *    each of its faces lies there. Groups that lie around all of this one count (face_set_sides.h).
  *  - A fin, drawn from both sides, with a rim of its own goes, as long as such fins have no more than a tenth
  *    of the area of the rest of their group: one side of it would leave the body open. A chair that is mostly
  *    sheets of two sides does not lose them.
