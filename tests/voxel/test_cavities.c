@@ -150,6 +150,28 @@ static void fillings_stay_in_triangles(void **state) {
     assert_cells(*state, seed, &how, 1 + seed % FILLINGS);
 }
 
+/** A block of which the skin lacks a square, the core first or last. */
+static void a_core_of_an_open_block_stays(void **state) {
+  for (int core_first = 0; core_first < 2; core_first++) {
+    vxm_rng rng = {1};
+    block b = {.order = {core_first == 1, core_first == 0}, .count = 2};
+    for (size_t c = 0; c < CELLS; c++) {
+      b.bodies[is_inner(c) && c % SIDE < 4].cells[c] = true;
+      b.wanted[c] = true;
+    }
+    vxm_soup *soup = faces_of(*state, &b, &squares, false, &rng), *prepared;
+    uint32_t *last = soup->indices + soup->corner_count - 4, *square = soup->indices;
+    for (size_t c = 0; c < 4 && core_first == 0; c++) /* the first one of the skin */
+      square[c] = last[c];
+    soup->face_count--;
+    soup->corner_count -= 4;
+    assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
+    assert_int_equal(count_wrong(prepared, &squares, b.wanted), 0);
+    vxm_soup_destroy(prepared);
+    vxm_soup_destroy(soup);
+  }
+}
+
 static int make_context(void **state) {
   *state = context_of_threads(2);
   return 0;
@@ -161,9 +183,11 @@ static int drop_context(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(voids_stay), cmocka_unit_test(voids_stay_in_triangles),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(voids_stay),
+                                     cmocka_unit_test(voids_stay_in_triangles),
                                      cmocka_unit_test(voids_of_an_open_block_stay),
                                      cmocka_unit_test(fillings_stay),
-                                     cmocka_unit_test(fillings_stay_in_triangles)};
+                                     cmocka_unit_test(fillings_stay_in_triangles),
+                                     cmocka_unit_test(a_core_of_an_open_block_stays)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -2,6 +2,7 @@
 #include "repair/clean/repeated_faces.h"
 
 #include "mesh/geometry.h"
+#include "repair/clean/outer_sides.h"
 #include "repair/state/edge_groups.h"
 #include "repair/state/face_set_sides.h"
 
@@ -343,6 +344,30 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
   return status;
 }
 
+/* ---- The outer side ---- */
+
+/** Of what is closed for itself, and was drawn from both sides, the outer one stays where one does: what lies
+ * in other things is taken for a cavity of these if it is turned inward. `counts` and `turn` are scratch per
+ * face.
+ */
+static vxm_status keep_outer(deciding *d, uint8_t *counts, uint8_t *turn, vxm_error *error) {
+  bool any = false;
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    counts[face] = may_be_body(d, face) && !d->fins[vxm_set_of(d->parent, face)].rimmed &&
+                   d->keep[2 * face] == 1 && d->keep[2 * face + 1] == 0;
+    any |= counts[face];
+  }
+  if (!any || d->groups.count < 2) /* alone it is turned outward later */
+    return VXM_OK;
+  vxm_status status = vxm_outer_sides_find(turn, d->state, d->groups.sides, counts, error);
+  for (size_t face = 0; status == VXM_OK && face < d->soup->face_count; face++)
+    if (turn[face]) {
+      d->keep[2 * face] = 0;
+      d->keep[2 * face + 1] = 1;
+    }
+  return status;
+}
+
 /* ---- All of it ---- */
 
 static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *remove, vxm_error *error) {
@@ -358,6 +383,10 @@ static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *r
   if (status != VXM_OK)
     return status;
   settle(d, within);
+  memset(within, 0, d->soup->face_count);
+  status = keep_outer(d, remove, within, error);
+  if (status != VXM_OK)
+    return status;
   for (size_t face = 0; face < d->soup->face_count; face++)
     remove[face] = !stays(d, face);
   return VXM_OK;

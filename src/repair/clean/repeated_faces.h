@@ -12,7 +12,8 @@
  * A group is what edges connect (repair/state/edge_groups.h). Where it is open, of faces that repeat each
  * other one stays: a sheet that was drawn from both sides is one sheet. Where it is closed, a set of repeated
  * faces that edges connect is judged as a whole:
- *  - If it is closed for itself, as a body that is there twice, one of each of its faces stays.
+ *  - If it is closed for itself, as a body that is there twice, one of each of its faces stays: of
+ *    what was drawn from both sides, and does not lie within the solid, the outer one.
  *  - If it lies within the solid on both sides, as the wall between two rooms, or between a block and what
  *    fills a void of it, all of it goes; of what was drawn from both sides and is closed for itself, only if
  *    each of its faces lies there. Groups that lie around all of this one count (face_set_sides.h).
