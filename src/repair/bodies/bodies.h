@@ -18,7 +18,7 @@
  * that share a side, overlap or are equal become their union and, within it, what they have in common. The
  * parity of each layer tells its inside, and they nest: nothing cancels, as it does in the parity of all
  * together. Voids in a block stay voids. What is wound round the other way is turned over. Faces that lie
- * back to back and so bound nothing are left as a sheet with one side.
+ * back to back and so bound nothing are left as a sheet with one side, but for those within the solid.
  *
  * A group where faces cut through each other between their edges may have no layers of whole faces; then it
  * stays as it is. Counted as separation: vertices that there are more. work->shared becomes the number of

@@ -38,8 +38,14 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   return status;
 }
 
-/** Lists some faces of each patch, spread over it, and all that count, those around a group too. @param size
- * scratch per face, twice */
+/** Whether a face stands for a sheet of a group that is asked for. */
+static bool is_sheet(const vxm_layers *l, size_t face) {
+  return l->asked[l->groups->of_face[face]] && vxm_layers_surplus(l, face) == 0 &&
+         l->copies[face].first == face;
+}
+
+/** Lists some faces of each patch, spread over it, and all sheets; marks all that count, those around a group
+ * too. @param size scratch per face, twice */
 static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_face_set_side *sets, size_t *size) {
   size_t faces = l->state->soup->face_count, count = 0, *seen = size + faces;
   for (size_t f = 0; f < faces; f++) {
@@ -50,6 +56,8 @@ static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_face_set_side *set
     size[vxm_set_of(l->patch, f)] += is_asked(l, f);
   }
   for (size_t f = 0; f < faces; f++) {
+    if (is_sheet(l, f))
+      sets[count++] = (vxm_face_set_side){.face = f, .set = f};
     if (!is_asked(l, f))
       continue;
     size_t root = vxm_set_of(l->patch, f), step = size[root] / SAMPLES + 1;
@@ -101,7 +109,7 @@ static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *
     for (j = i; j < count && sets[j].set == sets[i].set;)
       j++;
     take_answers(l, sets + i, j - i, reach);
-    all = all && l->known[sets[i].set];
+    all = all && (l->known[sets[i].set] || is_sheet(l, sets[i].set));
   }
   return all ? VXM_OK : vxm_layers_balance(l, reach, error);
 }
