@@ -146,7 +146,8 @@ static bool put_pieces(parting *p, const uint8_t *touches) {
     if (!p->asked[group] || p->failed[group])
       done = put(p, touches[group] ? key_of(group, 0) : 0, f, false);
     else if (vxm_layers_surplus(&p->layers, f) == 0)
-      done = p->copies[f].first != f || put(p, 0, f, false); /* a sheet, of which one side is enough */
+      done = p->copies[f].first != f || vxm_layers_hides(&p->layers, f) ||
+             put(p, 0, f, false); /* a sheet, of which one side is enough */
     else if (vxm_layers_stands(&p->layers, f))
       done = put_layers(p, f);
     done = done && goes_on(p, f);

@@ -14,10 +14,11 @@
  *    their rims at a vertex stay together.
  *  - Groups that are balanced (repair/state/edge_groups.h) and have edges with more than two sides, into
  * layers: the winding number is then a whole one everywhere, and layer k is the surface of what the faces
- * wind round k times or more. So two boxes that share a side, overlap or are equal become their union and,
- * within it, what they have in common. The parity of each layer tells its inside, and they nest: nothing
- * cancels, as it does in the parity of all together. What winds the other way round is turned over. Faces
- * that lie back to back and so bound nothing are left as a sheet with one side.
+ * wind round k times or more, those of other groups that lie around all of the group with them. So two boxes
+ * that share a side, overlap or are equal become their union and, within it, what they have in common. The
+ * parity of each layer tells its inside, and they nest: nothing cancels, as it does in the parity of all
+ * together. Voids in a block stay voids. What is wound round the other way is turned over. Faces that lie
+ * back to back and so bound nothing are left as a sheet with one side, but for those within the solid.
  *
  * A group where faces cut through each other between their edges may have no layers of whole faces; then it
  * stays as it is. Counted as separation: vertices that there are more. state->shared becomes the number of

@@ -38,15 +38,26 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   return status;
 }
 
-/** Lists some faces of each patch, spread over it, and all that count. @param size scratch per face, twice */
+/** Whether a face stands for a sheet of a group that is asked for. */
+static bool is_sheet(const vxm_layers *l, size_t face) {
+  return l->asked[l->groups->of_face[face]] && vxm_layers_surplus(l, face) == 0 &&
+         l->copies[face].first == face;
+}
+
+/** Lists some faces of each patch, spread over it, and all sheets; marks all that count, those around a group
+ * too. @param size scratch per face, twice */
 static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_face_set_side *sets, size_t *size) {
   size_t faces = l->state->soup->face_count, count = 0, *seen = size + faces;
   for (size_t f = 0; f < faces; f++) {
     int64_t surplus = vxm_layers_surplus(l, f);
-    bound[f] = l->asked[l->groups->of_face[f]] && surplus > 0 && l->copies[f].rank < (uint64_t)surplus;
+    bound[f] = l->groups->groups[l->groups->of_face[f]].balanced
+                   ? surplus > 0 && l->copies[f].rank < (uint64_t)surplus
+                   : l->copies[f].first == f;
     size[vxm_set_of(l->patch, f)] += is_asked(l, f);
   }
   for (size_t f = 0; f < faces; f++) {
+    if (is_sheet(l, f))
+      sets[count++] = (vxm_face_set_side){.face = f, .set = f};
     if (!is_asked(l, f))
       continue;
     size_t root = vxm_set_of(l->patch, f), step = size[root] / SAMPLES + 1;
@@ -89,7 +100,7 @@ static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *
   size_t count = list_samples(l, bound, sets, size);
   vxm_status status = vxm_ask(l->state->context, error);
   if (status == VXM_OK)
-    status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, error);
+    status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, true, error);
   if (status != VXM_OK)
     return status;
   qsort(sets, count, sizeof *sets, by_set_then_face);
@@ -98,7 +109,7 @@ static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *
     for (j = i; j < count && sets[j].set == sets[i].set;)
       j++;
     take_answers(l, sets + i, j - i, reach);
-    all = all && l->known[sets[i].set];
+    all = all && (l->known[sets[i].set] || is_sheet(l, sets[i].set));
   }
   return all ? VXM_OK : vxm_layers_balance(l, reach, error);
 }

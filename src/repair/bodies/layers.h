@@ -16,8 +16,9 @@ typedef struct vxm_layers {
      the winding number is one and the same, unless another face cuts through it. */
   size_t
       *patch; /**< per face that stands for its kind: another one of its patch, or itself; see vxm_set_of */
-  int64_t *front; /**< per face that stands for a patch: the winding number where its normals point. Behind it
-                     is more by vxm_layers_surplus */
+  int64_t *front; /**< per face that stands for a patch: the winding number where its normals point, of its
+                     group and of what lies around all of that. Behind it is more by vxm_layers_surplus.
+                     The same per sheet */
   bool *known;    /**< the same: `front` is */
 } vxm_layers;
 
@@ -30,6 +31,12 @@ static inline int64_t vxm_layers_surplus(const vxm_layers *layers, size_t face) 
  * sheet, which has as many of both. */
 static inline bool vxm_layers_stands(const vxm_layers *layers, size_t face) {
   return vxm_layers_surplus(layers, face) > 0 && layers->copies[face].rank == 0;
+}
+
+/** Whether a sheet lies within what the faces wind round, on both its sides. */
+static inline bool vxm_layers_hides(const vxm_layers *layers, size_t face) {
+  size_t first = layers->copies[face].first;
+  return layers->known[first] && layers->front[first] != 0;
 }
 
 /**

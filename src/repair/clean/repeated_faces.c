@@ -2,6 +2,7 @@
 #include "repair/clean/repeated_faces.h"
 
 #include "mesh/geometry.h"
+#include "repair/clean/outer_sides.h"
 #include "repair/state/edge_groups.h"
 #include "repair/state/face_set_sides.h"
 
@@ -27,6 +28,7 @@ typedef struct fin {
   bool touches;    /**< along an edge there are other faces */
   bool hangs;      /**< along such an edge an odd number of its kinds end */
   bool rimmed;     /**< the same along an edge without others */
+  bool ends;       /**< along such an edge one of them ends alone */
   bool unbalanced; /**< of its kinds, taken once, more sides run along an edge one way than the other */
   int overlaps;    /**< edges with all other faces on one side of it, less those with some on either side */
   uint32_t least, most; /**< copies of any of its kinds that stay */
@@ -107,6 +109,7 @@ static void look_at_kind(deciding *d, size_t face) {
     f->touches |= others;
     f->hangs |= odd && others;
     f->rimmed |= odd && !others;
+    f->ends |= d->single[place] == 1 && !others;
     f->unbalanced |= d->balance[place] != 0;
   }
 }
@@ -229,6 +232,14 @@ static bool bounds(const deciding *d, size_t face) {
   return stays(d, face) && (k == PLAIN || (k == SAME_WAY && balanced));
 }
 
+/** Whether a face belongs to sheets that are closed for themselves: they may be a body that lies at the solid
+ * with a face or two, so that one face does not tell of the others; or cores with the cavity that they fill,
+ * and walls between them. */
+static bool may_be_body(const deciding *d, size_t face) {
+  const fin *f = &d->fins[vxm_set_of(d->parent, face)];
+  return d->kinds[face] == SHEET && !f->hangs && (f->touches ? !f->rimmed : !f->ends);
+}
+
 /** Decides about the fins, of which `within` are inside the solid. */
 static void settle(deciding *d, const uint8_t *within) {
   for (size_t face = 0; face < d->soup->face_count; face++) {
@@ -282,17 +293,12 @@ static bool may_be_wall(const deciding *d, size_t face) {
          d->fins[vxm_set_of(d->parent, face)].most == 2;
 }
 
-/** Whether a face belongs to sheets that are closed for themselves: they may be a body that lies at the solid
- * with a face or two, so that one face does not tell of the others. */
-static bool may_be_body(const deciding *d, size_t face) {
-  const fin *f = &d->fins[vxm_set_of(d->parent, face)];
-  return d->kinds[face] == SHEET && !f->hangs && !f->rimmed;
-}
-
 static bool is_asked(const deciding *d, size_t face) {
   size_t root = vxm_set_of(d->parent, face);
-  if (d->kinds[face] == PLAIN || !d->fins[root].touches)
+  if (d->kinds[face] == PLAIN)
     return false;
+  if (!d->fins[root].touches)
+    return may_be_body(d, face);
   bool whole = d->kinds[face] == SHEET || !d->groups.groups[d->groups.of_face[face]].balanced;
   return whole ? root == face || may_be_body(d, face) : may_be_wall(d, face);
 }
@@ -300,7 +306,7 @@ static bool is_asked(const deciding *d, size_t face) {
 /** Asks one face of a fin, or all of them, whether they lie within the solid: all have to. */
 static vxm_status ask(deciding *d, vxm_face_set_side *sets, size_t asked, const uint8_t *bound,
                       uint8_t *within, vxm_error *error) {
-  vxm_status status = vxm_face_set_sides_find(sets, asked, d->state, &d->groups, bound, error);
+  vxm_status status = vxm_face_set_sides_find(sets, asked, d->state, &d->groups, bound, false, error);
   for (size_t i = 0; status == VXM_OK && i < asked; i++)
     within[sets[i].set] = 1;
   for (size_t i = 0; status == VXM_OK && i < asked; i++) {
@@ -340,6 +346,30 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
   return status;
 }
 
+/* ---- The outer side ---- */
+
+/** Of what is closed for itself, and was drawn from both sides, the outer one stays where one does: what lies
+ * in other things is taken for a cavity of these if it is turned inward. `counts` and `turn` are scratch per
+ * face.
+ */
+static vxm_status keep_outer(deciding *d, uint8_t *counts, uint8_t *turn, vxm_error *error) {
+  bool any = false;
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    counts[face] = may_be_body(d, face) && !d->fins[vxm_set_of(d->parent, face)].rimmed &&
+                   d->keep[2 * face] == 1 && d->keep[2 * face + 1] == 0;
+    any |= counts[face];
+  }
+  if (!any || d->groups.count < 2) /* alone it is turned outward later */
+    return VXM_OK;
+  vxm_status status = vxm_outer_sides_find(turn, d->state, d->groups.sides, counts, error);
+  for (size_t face = 0; status == VXM_OK && face < d->soup->face_count; face++)
+    if (turn[face]) {
+      d->keep[2 * face] = 0;
+      d->keep[2 * face + 1] = 1;
+    }
+  return status;
+}
+
 /* ---- All of it ---- */
 
 static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *remove, vxm_error *error) {
@@ -355,6 +385,10 @@ static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *r
   if (status != VXM_OK)
     return status;
   settle(d, within);
+  memset(within, 0, d->soup->face_count);
+  status = keep_outer(d, remove, within, error);
+  if (status != VXM_OK)
+    return status;
   for (size_t face = 0; face < d->soup->face_count; face++)
     remove[face] = !stays(d, face);
   return VXM_OK;

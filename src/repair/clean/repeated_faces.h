@@ -12,9 +12,11 @@
  * A group is a set of faces that edges connect (repair/state/edge_groups.h). In an open group one of several
  * faces that repeat each other stays: a sheet that was drawn from both sides is one sheet. In a closed group
  * a set of repeated faces that edges connect is judged as a whole:
- *  - If it is closed by itself, as a body that is there twice, one copy of each of its faces stays.
- *  - If it lies within the solid on both sides, as the wall between two rooms, all of it goes; of what was
- *    drawn from both sides and is closed by itself, only if each of its faces lies there.
+ *  - If it is closed by itself, as a body that is there twice, one copy of each of its faces stays: of what
+ * was drawn from both sides, and does not lie within the solid, the outer one.
+ *  - If it lies within the solid on both sides, as the wall between two rooms, or between a block and what
+ *    fills a void of it, all of it goes; of what was drawn from both sides and is closed by itself, only if
+ *    each of its faces lies there. Groups that lie around all of this one count (face_set_sides.h).
  *  - A fin, drawn from both sides, with a rim of its own goes, as long as such fins have no more than a tenth
  *    of the area of the rest of their group: one side of it would leave the body open. A chair that is mostly
  *    sheets of two sides does not lose them.
