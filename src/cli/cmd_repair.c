@@ -43,7 +43,9 @@ static const cli_option known_options[] = {
     {KEY_WELD, "weld", "auto|off|EPS",
      "which vertices become one: auto = those at identical positions, and\n"
      "near ones where that closes cracks; off = identical positions only;\n"
-     "EPS = all that are no farther apart, in model units [auto]"},
+     "EPS = all that are no farther apart, in model units: each goes to the\n"
+     "nearest that stays, and no two that stay are within EPS. Edges that\n"
+     "short collapse, and walls that thin close up [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
     {KEY_TURNED, "keep-orientation", NULL,
      "leave faces turned as they are, rather than consistently and outward"},

@@ -18,7 +18,10 @@ extern "C" {
 typedef enum vxm_weld {
   VXM_WELD_AUTO = 0, /**< bit-identical positions, then near ones where that closes cracks */
   VXM_WELD_OFF,      /**< bit-identical positions only */
-  VXM_WELD_TOLERANCE /**< bit-identical positions, then all that are no farther apart than weld_tolerance */
+  VXM_WELD_TOLERANCE /**< bit-identical positions, then all that are no farther apart than weld_tolerance:
+                        groups that lie within it go to their first vertex; of chains and crowds that are
+                        wider, each that is near to none before it stays, in their order, and the others go to
+                        the nearest of these. No two that stay are within it of each other */
 } vxm_weld;
 
 /**
