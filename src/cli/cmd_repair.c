@@ -60,7 +60,8 @@ static const cli_option known_options[] = {
      "what becomes of open sheets at the levels closed and solid: plates, with\n"
      "their faces moved to both sides; keep leaves them open, and the level is\n"
      "not reached [thicken]"},
-    {KEY_THICKNESS, "thickness", "T", "how thick, in model units [0.002 of the diagonal]"},
+    {KEY_THICKNESS, "thickness", "T",
+     "how thick, in model units; at most the model's diagonal [0.002 of that]"},
     {KEY_DROP_PARTS, "drop-parts", "faces:N|volume:V",
      "drop components with fewer than N faces, or closed ones with less volume\n"
      "than V, in model units cubed; may be given twice, once for each. The\n"

@@ -81,10 +81,11 @@ typedef struct vxm_repair_options {
   double fallback_alpha; /**< wrap those parts alone that cannot be united: as wrap_alpha, of their own
                             bounds; 0 = leave them */
   vxm_sheets sheets;     /**< what becomes of open sheets, from VXM_LEVEL_CLOSED on */
-  double thickness; /**< of the plates that sheets become, model units, half of it to each side; 0 = 0.002 of
-                       the diagonal of the bounds */
-  bool triangles;   /**< split polygons before anything else happens to them, so that the levels hold of the
-                       triangles that vxm_mesh_write makes of them; single_precision does that too */
+  double
+      thickness;  /**< of the plates that sheets become, model units, half of it to each side; 0 = 0.002 of
+                     the diagonal of the bounds. More than that diagonal is refused where there are sheets */
+  bool triangles; /**< split polygons before anything else happens to them, so that the levels hold of the
+                     triangles that vxm_mesh_write makes of them; single_precision does that too */
 } vxm_repair_options;
 
 /** Initial value of vxm_repair_options. */
