@@ -65,7 +65,8 @@ static const cli_option known_options[] = {
     {KEY_DROP_PARTS, "drop-parts", "faces:N|volume:V",
      "drop components with fewer than N faces, or closed ones with less volume\n"
      "than V, in model units cubed; may be given twice, once for each. The\n"
-     "component with the largest area always stays"},
+     "component with the largest area always stays, and cavities with what they\n"
+     "are in"},
     {KEY_UNION, "union", NULL, "unite closed parts that cut through each other (CGAL)"},
     {KEY_FALLBACK, "fallback", "wrap[:ALPHA]",
      "wrap those parts alone that cannot be united, with --union or --level\n"

@@ -75,7 +75,8 @@ typedef struct vxm_repair_options {
   int64_t
       drop_faces; /**< drop components with fewer faces than this, triangles if they are split; 0 = none */
   double drop_volume;    /**< drop closed components with less volume than this, model units cubed; 0 = none.
-                            The component with the largest area always stays */
+                            The component with the largest area always stays, and cavities stay as long as what
+                            they are in does */
   bool intersections;    /**< count self-intersections, before and after, in the report and in the account of
                             parts; needs the module for CGAL */
   double fallback_alpha; /**< wrap those parts alone that cannot be united: as wrap_alpha, of their own
