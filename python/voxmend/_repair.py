@@ -90,6 +90,9 @@ def _remaining(report: Any) -> List[str]:
     if report.union_failures > 0:
         out.append("%d parts still cut through others or themselves, and what is open has no inside to unite" %
                    report.union_failures)
+    if report.emptied_parts > 0:
+        out.append("%d closed parts that run through themselves have lost some of what they enclosed: it was wound the other way; "
+                   "remesh keeps it" % report.emptied_parts)
     return out
 
 

@@ -341,6 +341,17 @@ static const char *advice(const vxm_repair_options *repair) {
          "(--wrap, --fallback), or take what there is (--best-effort)";
 }
 
+static void warn_emptied(cli_run *cli, const char *input, int64_t parts) {
+  if (parts > 0)
+    cli_warn(
+        cli,
+        "%s: %lld closed %s, wound the other way; voxmend remesh keeps it, and voxmend voxelize takes the "
+        "mesh as it is",
+        cli_shown(input, "<stdin>"), (long long)parts,
+        parts == 1 ? "part runs through itself, and has lost some of what it enclosed"
+                   : "parts run through themselves, and have lost some of what they enclosed");
+}
+
 static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_status status = vxm_mesh_write_verified(&outcome->verification, outcome->mesh, given->output,
                                               &given->write, &given->repair, given->best_effort, &cli->error);
@@ -351,6 +362,7 @@ static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcom
   if (status != VXM_OK)
     return cli_fail(cli);
   cli_warn_lost(cli, given->input, &outcome->repair);
+  warn_emptied(cli, given->input, outcome->repair.emptied_parts);
   if (outcome->repair.opened_parts > 0)
     cli_warn(cli, "%s: %lld closed %s open after the repair", given->output,
              (long long)outcome->repair.opened_parts,

@@ -137,11 +137,17 @@ typedef struct vxm_repair_report {
                            options.part_changes, else 0 */
   vxm_census *before;      /**< set by the caller: NULL, or where the census of the mesh that is given goes */
   vxm_census *after; /**< set by the caller: NULL, or where that of the result goes; each takes some time */
+  int64_t emptied_parts; /**< closed components of which more than a hundredth of what they enclosed was taken
+                            away by a union: a surface that runs through itself, as a figure of eight, loses
+                            what it winds round the other way */
 } vxm_repair_report;
 
 /** Initial value of vxm_repair_report. */
-#define VXM_REPAIR_REPORT_INIT \
-  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
+#define VXM_REPAIR_REPORT_INIT                                                                               \
+  {                                                                                                          \
+    sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL, \
+        0                                                                                                    \
+  }
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated
