@@ -6,7 +6,7 @@ import hashlib
 import json
 import os
 from array import array
-from typing import Any, Dict, Iterator, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ._errors import ArgumentError, FormatError
 
@@ -148,6 +148,10 @@ class Records:
         self._files[file].seek(at)
         out: Dict[str, Any] = json.loads(self._files[file].readline())
         return out
+
+    def classes(self) -> List[str]:
+        """Sorted names of all classes of the plan, whatever became of their meshes: their numbers depend on nothing else."""
+        return sorted({_place(self._line(-1, at))[0] for at in self._plan})
 
     def __len__(self) -> int:
         return len(self._plan)

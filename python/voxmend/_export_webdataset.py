@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tars as webdataset reads them: KEY.bits.npy and KEY.json for each mesh, and index.jsonl, which says where each stands.
+"""Tars as webdataset reads them: KEY.bits.npy and KEY.json for each mesh; index.jsonl, which says where each stands, and
+classes.json, all classes of the batch's plan.
 
 The bytes follow from the outputs of the batch and the options alone (and numpy's header of .npy).
 """
@@ -7,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import json
 import os
 import tarfile
 from typing import Any, Dict, Iterator, List, Optional, Tuple
@@ -135,4 +137,6 @@ def write(records: Records, path: str, *, max_bytes: int = MAX_BYTES, content: s
         for line in _write_all(records, order, folder, make, max_bytes):
             tars.add(line["tar"])
             index.write(json_line(line))
+        with open(os.path.join(folder, "classes.json"), "w", encoding="utf-8") as file:
+            json.dump(records.classes(), file)
     return {"output": path, "format": "webdataset", "meshes": len(numbers), "tars": len(tars)}

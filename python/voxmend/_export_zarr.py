@@ -76,7 +76,7 @@ def write(records: Records, path: str, *, split: Optional[str] = None, chunk_byt
     """See `voxmend.batch.export`."""
     _values.whole("export: chunk_bytes", chunk_bytes, 1)
     zarr, everything = _zarr(), with_grids(records)
-    classes = sorted({records[number].kind for number in everything})
+    classes = records.classes()
     numbers = [number for number in everything if split is None or records[number].split == split]
     if not numbers:
         raise EmptyError("%s: no mesh is of the split %r" % (records.folder, split))

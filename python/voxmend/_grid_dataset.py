@@ -30,7 +30,8 @@ class GridDataset(Dataset):
         packed: items are (nx, ny, ceil(nz / 8)) uint8, see `unpack`, rather than (1, nx, ny, nz) float32.
 
     Attributes:
-        classes: sorted names, of all splits, so that labels are the same in each.
+        classes: sorted names of all that the batch's plan has, in whatever split and whatever became of their meshes, so that
+            labels are the same everywhere.
         names: of the meshes, as in the plan; of variants as often as there are some.
         labels: (n,) int64, numbers of the classes.
         shape: (nx, ny, nz)
@@ -40,7 +41,7 @@ class GridDataset(Dataset):
     def __init__(self, root: Any, split: Optional[str] = None, *, packed: bool = False):
         self.root = os.fsdecode(_values.path(root))
         self._source = open_source(self.root)
-        self.classes: List[str] = sorted(set(self._source.kinds))
+        self.classes: List[str] = list(self._source.classes)
         self.packed = _values.flag("dataset: packed", packed)
         self.shape = self._source.shape
         if split is not None and split not in self._source.splits:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the grids of a batch stand: its folder, or what was exported of it. Each gives bits, as `_packed` has them.
 
-A source has `shape`, of each grid; `names`, `kinds` and `splits`, of each; `groups`, numbers of what is read together; and
-`packed(i)`. It may be pickled, and used after a fork.
+A source has `shape`, of each grid; `names`, `kinds` and `splits`, of each; `classes`, all kinds of the batch's plan; `groups`,
+numbers of what is read together; and `packed(i)`. It may be pickled, and used after a fork.
 """
 from __future__ import annotations
 
@@ -49,11 +49,14 @@ class _Told:
 class Source:
     """What all of them share."""
 
-    def __init__(self, told: _Told, groups: Array, where: str):
+    def __init__(self, told: _Told, groups: Array, where: str, classes: Any):
         if told.shape is None:
             raise EmptyError("%s: there is no grid in it" % where)
         self.where, self.shape, self.groups = where, told.shape, groups
         self.names, self.kinds, self.splits = told.names, told.kinds, told.splits
+        if classes is not None and not (isinstance(classes, list) and set(self.kinds) <= set(classes)):
+            raise FormatError("%s: its classes are not those of its grids" % where)
+        self.classes: List[str] = sorted(set(self.kinds)) if classes is None else classes  # None: an older export
 
     def __len__(self) -> int:
         return len(self.names)
@@ -87,7 +90,7 @@ class FolderSource(Source):
         told = _Told()
         for number, _ in self.places:
             told.add(describe(self.records[number]), path)
-        super().__init__(told, numpy.arange(len(told.names)), path)
+        super().__init__(told, numpy.arange(len(told.names)), path, self.records.classes())
 
     def packed(self, number: int) -> Array:
         place, variant = self.places[number].tolist()
@@ -146,6 +149,16 @@ def _arrays_of(line: Dict[str, Any], members: Collection[str], where: str) -> Li
     return wanted
 
 
+def _classes_of_tars(path: str) -> Any:
+    try:
+        with open(os.path.join(path, "classes.json"), "rb") as file:
+            return json.load(file)
+    except FileNotFoundError:
+        return None
+    except ValueError:
+        raise FormatError("%s: classes.json is no JSON" % path) from None
+
+
 class TarSource(Source):
     """Tars with their index.jsonl, read where each grid stands."""
 
@@ -163,7 +176,7 @@ class TarSource(Source):
         self.tars = [os.path.join(path, name) for name in numbers]
         self.places = numpy.array(tars, numpy.int64).reshape(-1, 6)
         self._open: "collections.OrderedDict[int, Any]" = collections.OrderedDict()
-        super().__init__(told, self.places[:, 0].copy(), path)
+        super().__init__(told, self.places[:, 0].copy(), path, _classes_of_tars(path))
 
     def __getstate__(self) -> Dict[str, Any]:
         return dict(self.__dict__, _open=collections.OrderedDict())
@@ -207,7 +220,7 @@ class ZarrSource(Source):
         for line in _lines(os.path.join(path, "items.jsonl")):
             told.add(line, path)
         self.each = int(self._array().chunks[0])
-        super().__init__(told, numpy.arange(len(told.names)) // self.each, path)
+        super().__init__(told, numpy.arange(len(told.names)) // self.each, path, attributes.get("classes"))
 
     def _group(self) -> Any:
         try:

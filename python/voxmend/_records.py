@@ -137,6 +137,7 @@ class RepairReport(Record):
         unparted_vertices: that share a position and could not be moved apart.
         shared_faces: that repeat others and stay, as bodies overlap there.
         lost_parts: closed components that enclose less than before.
+        emptied_parts: closed components that run through themselves, and of whose inside a union has taken something away.
         sheets: open components that became plates, or were dropped.
         opened_parts: closed before, open after (with `part_changes`).
         max_displacement: no vertex was moved farther, model units (with `part_changes`).
@@ -159,6 +160,7 @@ class RepairReport(Record):
     sheets: int = 0
     opened_parts: int = 0
     max_displacement: float = 0.0
+    emptied_parts: int = 0
 
     def __getitem__(self, name: str) -> int:
         return self.passes[name]

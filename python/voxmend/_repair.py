@@ -24,7 +24,7 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
     Args:
         mesh: Mesh, path, open file, (vertices, faces), or a mesh of trimesh, open3d, pyvista or meshio.
         level: how far to go: "clean", "manifold", "closed" or "solid" (which needs the module for CGAL).
-        weld: "auto", "off", or a distance in model units.
+        weld: "auto", "off", or a distance in model units, within which no two vertices are left.
         keep_duplicates, keep_orientation: leave repeated faces in, and faces turned as they are.
         fill_holes: those of at most so many edges; a negative number or "all" is all.
         fill: with what: "fan", "minimal" (needs OpenMesh) or "smooth" (needs CGAL).
@@ -32,9 +32,10 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         wrap_alpha: put a closed surface around everything instead: the size of the smallest hole that it goes into, as a
             fraction of the diagonal; 0 = do not. wrap_offset: its distance from the mesh, in the same way (needs CGAL).
         max_change: UnreachedError where the volume or the bounds of a closed part change by more than this fraction; 0 = any.
-        drop_faces, drop_volume: components with fewer faces, or less volume (model units cubed), are dropped.
+        drop_faces, drop_volume: components with fewer faces, or less volume (model units cubed), are dropped. Cavities stay
+            with what they are in.
         sheets: what becomes of open sheets at "closed" and "solid": "thicken", "keep" or "drop".
-        thickness: of the plates they become, model units; 0 is 0.002 of the diagonal.
+        thickness: of the plates they become, model units, at most the diagonal of the bounds; 0 is 0.002 of it.
         fallback_alpha: wrap the parts that cannot be united, alone, with this fraction of their diagonal; 0 leaves them.
         triangles: split polygons first, so that the level holds of the triangles that `Mesh.save` writes.
         separate: where bodies share faces each gets its own (level "manifold"), so that no body is lost between others
@@ -89,6 +90,9 @@ def _remaining(report: Any) -> List[str]:
     if report.union_failures > 0:
         out.append("%d parts still cut through others or themselves, and what is open has no inside to unite" %
                    report.union_failures)
+    if report.emptied_parts > 0:
+        out.append("%d closed parts that run through themselves have lost some of what they enclosed: it was wound the other way; "
+                   "remesh keeps it" % report.emptied_parts)
     return out
 
 

@@ -42,6 +42,10 @@ def _files_of(folder: str) -> List[str]:
                   if name.lower().endswith(EXTENSIONS))
 
 
+def _has_mesh(folder: str) -> bool:
+    return any(name.lower().endswith(EXTENSIONS) for _, _, names in os.walk(folder) for name in names)
+
+
 class VoxelDataset(Dataset):
     """The meshes of a folder of class folders, as in ModelNet: `root/chair/train/chair_0001.off`; or `root/chair/*.off`.
 
@@ -49,7 +53,7 @@ class VoxelDataset(Dataset):
     process, and another one in each epoch.
 
     Args:
-        root: folder of the class folders, whose sorted names are the classes.
+        root: folder of the class folders; the sorted names of those with a mesh in them, in whatever split, are the classes.
         split: folder within each of them, such as "train" or "test"; None = all files of a class.
         resolution: D, voxels along each axis.
         variants: of each model in an epoch.
@@ -67,7 +71,8 @@ class VoxelDataset(Dataset):
         self.root = os.fsdecode(_values.path(root))
         for name, value, least in (("resolution", resolution, 1), ("variants", variants, 0), ("memory", memory, 0)):
             _values.whole("dataset: " + name, value, least)
-        self.classes = sorted(e.name for e in os.scandir(self.root) if e.is_dir() and not e.name.startswith("."))
+        self.classes = sorted(e.name for e in os.scandir(self.root)
+                              if e.is_dir() and not e.name.startswith(".") and _has_mesh(e.path))
         self.files: List[str] = []
         self.labels: List[int] = []
         for label, name in enumerate(self.classes):

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make a number per voxel: they check arguments and call down. */
 #include "api/api_results.h"
+#include "base/exact_math.h"
 #include "export/field.h"
 #include "grid/bit_transpose.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 
@@ -82,6 +84,24 @@ vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model
 
 /* ---- Distance ---- */
 
+/** Distances are 32-bit floats: voxels that these cannot measure would all have one number, 0 or infinity. */
+static vxm_status check_float_range(const vxm_space *space, double band, vxm_error *error) {
+  const double *size = space->voxel_size;
+  double longest = fmax(fmax(size[0], size[1]), size[2]), side[3];
+  for (int a = 0; a < 3; a++)
+    side[a] = (double)space->dims[a] * size[a];
+  double farthest = band > 0 ? band * longest : vxm_length3(side[0], side[1], side[2]);
+  if (!(farthest <= FLT_MAX))
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "distance: voxels of %g have distances beyond 32-bit floats; scale the model down",
+                    longest);
+  if (longest < FLT_MIN)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "distance: voxels of %g have distances too small for 32-bit floats; scale the model up",
+                    longest);
+  return VXM_OK;
+}
+
 static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *model, const vxm_space *space,
                                  const vxm_distance_options *options, vxm_error *error) {
   *chosen = (vxm_distance_options)VXM_DISTANCE_OPTIONS_INIT;
@@ -93,7 +113,8 @@ static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *
   if (!chosen->is_unsigned && model->options.mode != VXM_MODE_SOLID)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "distance: the sign is that of the solid; make the model with VXM_MODE_SOLID");
-  return vxm_space_check(space, error);
+  status = vxm_space_check(space, error);
+  return status == VXM_OK ? check_float_range(space, chosen->band, error) : status;
 }
 
 vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_model *model,

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Files with the same bytes are worked at once: the others get links to what was made. */
+#include "batch/outputs.h"
 #include "batch/run.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /** What refers to other files may mean something else in another folder. */
@@ -152,14 +155,40 @@ void batch_find_duplicates(run *r) {
 
 /* ---- Links ---- */
 
+/** A link to what a walk finds in a folder, in another one. */
+static bool link_entry(const char *from, const char *to, const char *name) {
+  char *old = NULL, *new = NULL;
+  bool good = asprintf(&old, "%s/%s", from, name) >= 0 && asprintf(&new, "%s/%s", to, name) >= 0;
+  good = good && link(old, new) == 0;
+  free(old);
+  free(new);
+  return good;
+}
+
+/** Folders have no links; their files do. */
+static bool link_folder(const char *from, const char *to) {
+  DIR *folder = opendir(from);
+  bool good = folder && mkdir(to, 0777) == 0;
+  for (struct dirent *entry; good && (entry = readdir(folder)) != NULL;)
+    good = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 ||
+           link_entry(from, to, entry->d_name);
+  if (folder)
+    closedir(folder);
+  if (!good)
+    batch_folder_remove(to);
+  return good;
+}
+
 /** Takes the place of what is there, of a run before. */
-static bool link_file(const run *r, const char *from, const char *to) {
+static bool link_output(const run *r, const char *from, const char *to, bool is_folder) {
   char *old = NULL, *new = NULL;
   bool good = asprintf(&old, "%s/%s", r->settings->output, from) >= 0;
   good = good && asprintf(&new, "%s/%s", r->settings->output, to) >= 0;
-  if (good && unlink(new) != 0 && errno != ENOENT)
+  if (good && is_folder)
+    batch_folder_remove(new);
+  else if (good && unlink(new) != 0 && errno != ENOENT)
     good = false;
-  good = good && link(old, new) == 0;
+  good = good && (is_folder ? link_folder(old, new) : link(old, new) == 0);
   free(old);
   free(new);
   return good;
@@ -187,7 +216,8 @@ static bool link_outputs(run *r, const batch_item *original, const batch_item *i
   json_array_foreach(files, f, file) {
     const char *path = batch_json_text(file, "path");
     char *name = path ? renamed(path, original->output, item->output) : NULL;
-    good = good && name && batch_make_folders(r, name) && link_file(r, path, name);
+    good = good && name && batch_make_folders(r, name) &&
+           link_output(r, path, name, json_object_get(file, "files") != NULL);
     if (name)
       json_object_set_new(file, "path", batch_json_string(name));
     free(name);

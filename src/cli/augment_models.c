@@ -147,10 +147,19 @@ static int make(cli_run *cli, several *s, const augment_request *given, int64_t 
 
 /* ---- models.tsv ---- */
 
-/** A cell has neither tabs nor ends of lines. */
+/** With tabs, ends of lines and quotes in it a cell stands in quotes, each of its own twice, as in tables
+ * that are read: its name still leads to the file. */
 static void put_cell(FILE *file, const char *text, char end) {
-  for (; text && *text; text++)
-    fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
+  bool is_quoted = text && strpbrk(text, "\t\n\r\"");
+  if (is_quoted)
+    fputc('"', file);
+  for (; text && *text; text++) {
+    if (*text == '"')
+      fputc('"', file);
+    fputc(*text, file);
+  }
+  if (is_quoted)
+    fputc('"', file);
   fputc(end, file);
 }
 

@@ -43,7 +43,9 @@ static const cli_option known_options[] = {
     {KEY_WELD, "weld", "auto|off|EPS",
      "which vertices become one: auto = those at identical positions, and\n"
      "near ones where that closes cracks; off = identical positions only;\n"
-     "EPS = all that are no farther apart, in model units [auto]"},
+     "EPS = all that are no farther apart, in model units: each goes to the\n"
+     "nearest that stays, and no two that stay are within EPS. Edges that\n"
+     "short collapse, and walls that thin close up [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
     {KEY_TURNED, "keep-orientation", NULL,
      "leave faces turned as they are, rather than consistently and outward"},
@@ -58,11 +60,13 @@ static const cli_option known_options[] = {
      "what becomes of open sheets at the levels closed and solid: plates, with\n"
      "their faces moved to both sides; keep leaves them open, and the level is\n"
      "not reached [thicken]"},
-    {KEY_THICKNESS, "thickness", "T", "how thick, in model units [0.002 of the diagonal]"},
+    {KEY_THICKNESS, "thickness", "T",
+     "how thick, in model units; at most the model's diagonal [0.002 of that]"},
     {KEY_DROP_PARTS, "drop-parts", "faces:N|volume:V",
      "drop components with fewer than N faces, or closed ones with less volume\n"
      "than V, in model units cubed; may be given twice, once for each. The\n"
-     "component with the largest area always stays"},
+     "component with the largest area always stays, and cavities with what they\n"
+     "are in"},
     {KEY_UNION, "union", NULL, "unite closed parts that cut through each other (CGAL)"},
     {KEY_FALLBACK, "fallback", "wrap[:ALPHA]",
      "wrap those parts alone that cannot be united, with --union or --level\n"
@@ -337,6 +341,17 @@ static const char *advice(const vxm_repair_options *repair) {
          "(--wrap, --fallback), or take what there is (--best-effort)";
 }
 
+static void warn_emptied(cli_run *cli, const char *input, int64_t parts) {
+  if (parts > 0)
+    cli_warn(
+        cli,
+        "%s: %lld closed %s, wound the other way; voxmend remesh keeps it, and voxmend voxelize takes the "
+        "mesh as it is",
+        cli_shown(input, "<stdin>"), (long long)parts,
+        parts == 1 ? "part runs through itself, and has lost some of what it enclosed"
+                   : "parts run through themselves, and have lost some of what they enclosed");
+}
+
 static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_status status = vxm_mesh_write_verified(&outcome->verification, outcome->mesh, given->output,
                                               &given->write, &given->repair, given->best_effort, &cli->error);
@@ -347,6 +362,7 @@ static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcom
   if (status != VXM_OK)
     return cli_fail(cli);
   cli_warn_lost(cli, given->input, &outcome->repair);
+  warn_emptied(cli, given->input, outcome->repair.emptied_parts);
   if (outcome->repair.opened_parts > 0)
     cli_warn(cli, "%s: %lld closed %s open after the repair", given->output,
              (long long)outcome->repair.opened_parts,

@@ -69,7 +69,8 @@
     contacts, "no-manifold", NULL,                                                     \
         "of a mesh: leave voxels joined that touch in an edge or a corner alone, so\n" \
         "that edges may have four faces; else either side has vertices of its own,\n"  \
-        "1/256 of a voxel within"                                                      \
+        "1/256 of a voxel within; where the numbers of the file, the 32-bit\n"         \
+        "floats of .stl, are too coarse to tell vertices apart, there is no file"      \
   }
 /** How blocks and meshes stand: of cli_style. */
 #define CLI_OPTIONS_STYLE(blocks, up)                                                         \

@@ -108,6 +108,7 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "unparted_vertices", json_integer(repair->unparted_vertices));
   json_object_set_new(report, "shared_faces", json_integer(repair->shared_faces));
   json_object_set_new(report, "lost_parts", json_integer(repair->lost_parts));
+  json_object_set_new(report, "emptied_parts", json_integer(repair->emptied_parts));
   json_object_set_new(report, "opened_parts", json_integer(repair->opened_parts));
   json_object_set_new(report, "max_displacement", cli_json_number(repair->max_displacement));
   json_object_set_new(report, "before", before);

@@ -54,7 +54,9 @@ const cli_option voxelize_options[] = {
      "tight: the box of the model; sphere: N x N x N, the diagonal of the box\n"
      "fills it, so that every rotation stays inside [cube]"},
     {KEY_PAD, "pad", "P", "keep P voxels free on each side: within -r, in addition to --voxel-size [0]"},
-    {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
+    {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1",
+     "cover this box, whatever the model's size: from its least corner on,\n"
+     "rounded up to whole voxels; exactly with three numbers (-r 64x32x16)"},
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
     {KEY_MODE, "mode", "solid|surface|both",
      "solid: the inside, by voxel centres and --thin; surface: as --surface says;\n"
@@ -325,9 +327,9 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->resolution && given->size)
     return cli_usage(cli, "-r and --voxel-size exclude each other");
   if (given->bounds && given->pad)
-    return cli_usage(cli, "--bounds is covered exactly; leave out --pad");
+    return cli_usage(cli, "--bounds says what is covered; leave out --pad");
   if (given->bounds && given->fit)
-    return cli_usage(cli, "--bounds is covered exactly; leave out --fit");
+    return cli_usage(cli, "--bounds says what is covered; leave out --fit");
   if (check_rules(cli, given) == CLI_STOP)
     return CLI_STOP;
   if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)

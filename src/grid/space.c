@@ -189,7 +189,7 @@ static vxm_status choose(vxm_space *out, const vxm_soup *soup, const vxm_space_o
   if (options->use_bounds) {
     if (options->pad != 0)
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                      "bounds are covered exactly and take no pad; widen the bounds instead");
+                      "bounds say what is covered, and take no pad; widen the bounds instead");
     for (int a = 0; a < 3; a++) {
       b.low[a] = options->bounds[a];
       b.high[a] = options->bounds[a + 3];

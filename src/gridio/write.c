@@ -3,10 +3,12 @@
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/minecraft/blocks.h"
 #include "gridio/gridio.h"
+#include "gridio/mesh/coarse_positions.h"
 #include "gridio/mesh/surface_mesh.h"
 #include "meshio/meshio.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /** Word columns of the grid, each of which is up to 64 slices of a file that varies x slowest. */
 static vxm_status put_planes(vxm_grid_writer *writer, const vxm_grid *grid, vxm_error *error) {
@@ -65,7 +67,9 @@ static vxm_status write_surface(const vxm_grid *grid, const char *path, const ch
   vxm_status status = vxm_gridio_surface_mesh(&surface, grid, flags, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_meshio_write(surface, path, format, VXM_WRITE_POLYGONS, error);
+  status = vxm_check_coarse_positions(surface, &grid->space, strcmp(format, "stl") == 0, path, error);
+  if (status == VXM_OK)
+    status = vxm_meshio_write(surface, path, format, VXM_WRITE_POLYGONS, error);
   vxm_soup_destroy(surface);
   return status;
 }

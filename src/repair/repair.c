@@ -85,6 +85,7 @@ static void list_passes(vxm_repair_report *report, const vxm_repair_state *state
   report->self_intersections_after = state->crossings[1];
   report->unparted_vertices = state->together;
   report->lost_parts = state->lost_parts;
+  report->emptied_parts = state->emptied;
   report->shared_faces = state->options.level == VXM_LEVEL_CLEAN ? state->shared : 0;
   for (size_t i = 0; i < state->soup->part_count; i++) {
     const vxm_part_change *part = &state->soup->part_changes[i];

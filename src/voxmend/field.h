@@ -291,8 +291,8 @@ typedef struct vxm_distance_report {
  * @param report  may be NULL
  * @param model   of VXM_MODE_SOLID
  * @param options NULL = defaults
- * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT for another mode. After a failure the values are
- * unspecified
+ * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT for another mode; VXM_ERROR_RANGE for voxels so large or
+ * small that 32-bit floats do not hold the distances. After a failure the values are unspecified
  */
 VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_model *model,
                                       const vxm_space *space, const vxm_distance_options *options,

@@ -18,7 +18,10 @@ extern "C" {
 typedef enum vxm_weld {
   VXM_WELD_AUTO = 0, /**< bit-identical positions, then near ones where that closes cracks */
   VXM_WELD_OFF,      /**< bit-identical positions only */
-  VXM_WELD_TOLERANCE /**< bit-identical positions, then all that are no farther apart than weld_tolerance */
+  VXM_WELD_TOLERANCE /**< bit-identical positions, then all that are no farther apart than weld_tolerance:
+                        groups that lie within it go to their first vertex; of chains and crowds that are
+                        wider, each that is near to none before it stays, in their order, and the others go to
+                        the nearest of these. No two that stay are within it of each other */
 } vxm_weld;
 
 /**
@@ -72,16 +75,18 @@ typedef struct vxm_repair_options {
   int64_t
       drop_faces; /**< drop components with fewer faces than this, triangles if they are split; 0 = none */
   double drop_volume;    /**< drop closed components with less volume than this, model units cubed; 0 = none.
-                            The component with the largest area always stays */
+                            The component with the largest area always stays, and cavities stay as long as what
+                            they are in does */
   bool intersections;    /**< count self-intersections, before and after, in the report and in the account of
                             parts; needs the module for CGAL */
   double fallback_alpha; /**< wrap those parts alone that cannot be united: as wrap_alpha, of their own
                             bounds; 0 = leave them */
   vxm_sheets sheets;     /**< what becomes of open sheets, from VXM_LEVEL_CLOSED on */
-  double thickness; /**< of the plates that sheets become, model units, half of it to each side; 0 = 0.002 of
-                       the diagonal of the bounds */
-  bool triangles;   /**< split polygons before anything else happens to them, so that the levels hold of the
-                       triangles that vxm_mesh_write makes of them; single_precision does that too */
+  double
+      thickness;  /**< of the plates that sheets become, model units, half of it to each side; 0 = 0.002 of
+                     the diagonal of the bounds. More than that diagonal is refused where there are sheets */
+  bool triangles; /**< split polygons before anything else happens to them, so that the levels hold of the
+                     triangles that vxm_mesh_write makes of them; single_precision does that too */
 } vxm_repair_options;
 
 /** Initial value of vxm_repair_options. */
@@ -132,11 +137,17 @@ typedef struct vxm_repair_report {
                            options.part_changes, else 0 */
   vxm_census *before;      /**< set by the caller: NULL, or where the census of the mesh that is given goes */
   vxm_census *after; /**< set by the caller: NULL, or where that of the result goes; each takes some time */
+  int64_t emptied_parts; /**< closed components of which more than a hundredth of what they enclosed was taken
+                            away by a union: a surface that runs through itself, as a figure of eight, loses
+                            what it winds round the other way */
 } vxm_repair_report;
 
 /** Initial value of vxm_repair_report. */
-#define VXM_REPAIR_REPORT_INIT \
-  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
+#define VXM_REPAIR_REPORT_INIT                                                                               \
+  {                                                                                                          \
+    sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL, \
+        0                                                                                                    \
+  }
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated

@@ -52,6 +52,9 @@ run 'voxmend augment set/table/test/c.off -o - -n 3 $all --model 2 -q | tail -c 
 run 'printf "set/chair/train/a.off\nset/table/test/c.off\n" >list.txt; for t in 1 2; do voxmend augment list.txt -o - -n 3 $all --model 1 -q --threads $t | cmp - m.bin && echo equal; done'
 printf 'path,class,split\nset/chair/train/b.off,box,val\n' >table.csv
 run 'voxmend augment table.csv -o listed -n 1 -r 8 -q --json | timeless | sed -E "/_bytes/s/[0-9]+/N/"; cat listed/models.tsv'
+mkdir strange
+cp in/cube.off "strange/$(printf 'a\tb\nc "d".off')"
+run 'voxmend augment strange -o strange-out -n 1 -r 8 -q; cat strange-out/models.tsv; printf "path\tid\n\"strange/a\tb\nc \"\"d\"\".off\"\tagain\n" >strange.tsv; voxmend augment strange.tsv -o strange-again -n 1 -r 8 -q; cat strange-again/models.tsv'
 run 'voxmend augment set -o - -n 2 -r 8 -q | wc -c'
 cp set/table/test/d.off e.off
 run 'voxmend augment set/table/test/d.off e.off -o none'

@@ -103,6 +103,9 @@ for name in train/a test/b; do cp in/cube.off splits/chair/$name.off; done
 for name in extra/a val/b train/c; do cp in/torus.off splits/chair/$name.off; done
 run 'voxmend batch splits -o once -r 8 -q && grep -o "\"status\":\"duplicate\"[^}]*\"item\":\"[^\"]*\"" once/index.html | sed "s/.*:\"//" | sort'
 run 'grep -o "\"picture\":\"" once/index.html | wc -l'
+# Folders of variants have links in them.
+run 'voxmend batch splits -o varied --no-grid --augment "-n 2 -r 8" --pictures 0; voxmend batch verify varied; find varied -name "*.rle" | sort'
+run 'find varied -name "*.rle" -links 1; find varied -name "*.rle" -links 2 | wc -l; find varied -name "*.rle" -links 3 | wc -l'
 # Other products.
 run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --format obj" --remesh "-r 8" --augment "-n 2 -r 8 --format npy" --view "--size 40x30" --pictures 0'
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'

@@ -30,7 +30,7 @@ run 'cmp once.off twice.off'
 say "# small components"
 run 'voxmend repair in/overlapping.off -o all.off -q --polygons keep && voxmend repair all.off -o one.off --drop-parts faces:7 --polygons keep'
 run 'voxmend repair in/rocket.off -o large.off -q --drop-parts faces:50 && voxmend info large.off'
-run 'voxmend repair in/cavity.off -o filled.off -q --drop-parts volume:2 && voxmend info filled.off'
+run 'voxmend repair in/cavity.off -o hollow.off -q --drop-parts volume:2 && voxmend info hollow.off'
 run 'voxmend repair in/cavity.off -o both.off -q --drop-parts volume:0.5 --drop-parts faces:6 --polygons keep && cmp both.off in/cavity.off'
 run 'voxmend repair in/cube.off -o x.off --force --drop-parts 50'
 run 'voxmend repair in/cube.off -o x.off --force --drop-parts faces:0'

@@ -488,12 +488,55 @@ static void test_mesh_files(void **state) {
   remove_folder(folder);
 }
 
+/** Far from the origin a file is written as long as its numbers tell vertices apart, and none is beyond that.
+ */
+static void test_far_from_origin(void **state) {
+  (void)state;
+  char folder[64], path[80];
+  make_folder(folder);
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  static const struct {
+    double far; /* voxels */
+    const char *format;
+    bool touching, joined, written;
+  } cases[] = {
+      {30000, "stl", true, false, true},   {300000, "stl", true, false, false},
+      {300000, "stl", false, false, true}, {300000, "stl", true, true, true},
+      {8e6, "stl", false, false, true},    {2e7, "stl", false, false, false},
+      {2e7, "stl", true, true, false},     {2e7, "ply", true, false, true},
+      {2e7, "obj", true, false, true},     {1e15, "off", false, false, true},
+      {1e15, "off", true, false, false},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    vxm_space space = unit_space(6, 5, 4);
+    for (int a = 0; a < 3; a++) {
+      space.voxel_size[a] = 0.25;
+      space.origin[a] = 0.25 * cases[i].far;
+    }
+    vxm_grid *grid = new_grid(context, space);
+    vxm_row_set_span(vxm_grid_row(grid, 1, 1), 1, 2);
+    vxm_row_set_span(vxm_grid_row(grid, 2, 1), cases[i].touching ? 2 : 1, 4);
+    snprintf(path, sizeof path, "%s/s%zu.%s", folder, i, cases[i].format);
+    vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+    options.keep_contacts = cases[i].joined;
+    vxm_error error = VXM_ERROR_INIT;
+    assert_int_equal(vxm_gridio_write_with(grid, path, &options, &error),
+                     cases[i].written ? VXM_OK : VXM_ERROR_RANGE);
+    assert_int_equal(access(path, F_OK), cases[i].written ? 0 : -1);
+    assert_true(cases[i].written || strstr(error.text, "too coarse"));
+    vxm_grid_destroy(grid);
+  }
+  vxm_context_destroy(context);
+  remove_folder(folder);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_random_grids),     cmocka_unit_test(test_all_of_eight),
       cmocka_unit_test(test_known_sizes),      cmocka_unit_test(test_split_all),
       cmocka_unit_test(test_split_random),     cmocka_unit_test(test_same_for_all_threads),
       cmocka_unit_test(test_cancel_and_limit), cmocka_unit_test(test_mesh_files),
+      cmocka_unit_test(test_far_from_origin),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

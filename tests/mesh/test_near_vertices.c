@@ -2,6 +2,7 @@
 #include "soups.h"
 
 #include "mesh/near_vertices.h"
+#include "mesh/vertex_net.h"
 
 #include <math.h>
 
@@ -280,11 +281,118 @@ static void many_vertices(void **state) {
   free(positions);
 }
 
+/** In their order: those that stay are those to which none that stays is near; then the nearest. */
+static void net_by_pairs(const cloud *c, double tolerance, uint32_t *map) {
+  bool stays[N_MAX] = {false};
+  for (size_t v = 0; v < c->count; v++) {
+    stays[v] = is_member(c, v);
+    for (size_t u = 0; u < v && stays[v]; u++)
+      stays[v] = !stays[u] || distance(c, u, v) > tolerance;
+  }
+  for (size_t v = 0; v < c->count; v++) {
+    map[v] = (uint32_t)v;
+    for (size_t u = 0; u < c->count && is_member(c, v) && !stays[v]; u++)
+      if (stays[u] && distance(c, u, v) <= tolerance &&
+          (map[v] == v || distance(c, u, v) < distance(c, map[v], v)))
+        map[v] = (uint32_t)u;
+  }
+}
+
+static void net_equals_all_pairs(void **state) {
+  (void)state;
+  cloud *c = &the_cloud;
+  vxm_rng rng = {23};
+  vxm_context *context = context_of_threads(1);
+  static uint32_t wanted[N_MAX];
+  size_t later = 0;
+  for (int round = 0; round < 200; round++) {
+    c->count = (size_t)vxm_rng_below(&rng, 300);
+    double size = ldexp(1.0, (int)vxm_rng_below(&rng, 1800) - 900);
+    for (size_t v = 0; v < c->count; v++) {
+      for (size_t axis = 0; axis < 3; axis++)
+        c->positions[3 * v + axis] = size * (double)vxm_rng_below(&rng, 1024);
+      c->roles[v] = vxm_rng_below(&rng, 8) ? VXM_NEAR_MEMBER : VXM_NEAR_ABSENT;
+      c->map[v] = (uint32_t)v;
+    }
+    /* squares of whole numbers are never equal to this, so that rounding decides nothing */
+    double tolerance = size * (0.5 + sqrt(0.5 + (double)vxm_rng_below(&rng, 60000)));
+    for (size_t i = 0; i < 3 * c->count; i++)
+      c->positions[i] /= size;
+    net_by_pairs(c, tolerance / size, wanted);
+    for (size_t i = 0; i < 3 * c->count; i++)
+      c->positions[i] *= size;
+    assert_int_equal(vxm_vertex_net(context, c->positions, c->count, c->roles, tolerance, c->map, NULL),
+                     VXM_OK);
+    assert_memory_equal(c->map, wanted, c->count * sizeof *wanted);
+    for (size_t v = 0; v < c->count; v++)
+      later += c->map[v] > v;
+  }
+  assert_true(later > 100);
+  vxm_context_destroy(context);
+}
+
+/** After the groups: these stay as they are, and nothing near is left. */
+static void net_after_groups(void **state) {
+  (void)state;
+  cloud *c = &the_cloud;
+  vxm_rng rng = {24};
+  vxm_context *context = context_of_threads(2);
+  static uint32_t groups[N_MAX];
+  size_t merged = 0;
+  for (int round = 0; round < 40; round++) {
+    c->count = 1 + (size_t)vxm_rng_below(&rng, N_MAX);
+    for (size_t i = 0; i < 3 * c->count; i++)
+      c->positions[i] = 12 * vxm_rng_unit(&rng);
+    memset(c->roles, VXM_NEAR_MEMBER, c->count);
+    double tolerance = 0.1 + 0.1 * round;
+    weld(context, c, tolerance);
+    memcpy(groups, c->map, c->count * sizeof *groups);
+    assert_int_equal(vxm_vertex_net(context, c->positions, c->count, c->roles, tolerance, c->map, NULL),
+                     VXM_OK);
+    for (size_t v = 0; v < c->count; v++) {
+      assert_true(groups[v] == v || c->map[v] == groups[v]);
+      assert_int_equal(c->map[c->map[v]], c->map[v]);
+      assert_true(distance(c, v, c->map[v]) <= tolerance * (1 + 1e-12));
+      merged += groups[v] != v;
+      for (size_t u = 0; u < v && c->map[v] == v; u++)
+        assert_true(c->map[u] != u || distance(c, u, v) > tolerance * (1 - 1e-12));
+    }
+  }
+  assert_true(merged > 100);
+  vxm_context_destroy(context);
+}
+
+/** Columns beyond what integers hold, a tolerance beyond what numbers can be divided by, and crowds. */
+static void net_at_extremes(void **state) {
+  (void)state;
+  cloud *c = &the_cloud;
+  vxm_context *context = context_of_threads(1);
+  c->count = N_MAX;
+  for (size_t v = 0; v < N_MAX; v++) {
+    memcpy(c->positions + 3 * v, (double[3]){1e300, v % 2 ? 1e300 * (1 + (double)v) : -1, (double)v},
+           3 * sizeof(double));
+    c->roles[v] = VXM_NEAR_MEMBER;
+  }
+  static const double tolerances[] = {0x1p-1074, 0.5, 1.7e308};
+  static const bool all[] = {false, false, true};
+  for (int i = 0; i < 3; i++) {
+    for (size_t v = 0; v < N_MAX; v++)
+      c->map[v] = (uint32_t)v;
+    assert_int_equal(vxm_vertex_net(context, c->positions, N_MAX, c->roles, tolerances[i], c->map, NULL),
+                     VXM_OK);
+    for (size_t v = 0; v < N_MAX; v++)
+      assert_int_equal(c->map[v], all[i] ? 0 : v);
+  }
+  vxm_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(equals_all_pairs),         cmocka_unit_test(few_members_among_many),
       cmocka_unit_test(crowds_keep_the_promises), cmocka_unit_test(pairs_of_any_size),
       cmocka_unit_test(cells_beyond_integers),    cmocka_unit_test(many_vertices),
+      cmocka_unit_test(net_equals_all_pairs),     cmocka_unit_test(net_after_groups),
+      cmocka_unit_test(net_at_extremes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

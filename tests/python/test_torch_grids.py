@@ -5,6 +5,7 @@ import io
 import json
 import os
 import pickle
+import shutil
 import tempfile
 import unittest
 import warnings
@@ -17,7 +18,7 @@ import voxmend
 import voxmend.batch
 from voxmend.torch import GridDataset, IterableVoxelDataset, VoxelDataset, unpack
 
-from batch_lib import make_batch, remove
+from batch_lib import SAMPLES, make_batch, remove
 
 try:
     import zarr
@@ -62,6 +63,42 @@ class Grids(unittest.TestCase):
                 data[8]
             with self.assertRaises(voxmend.EmptyError):
                 GridDataset(root, "none")
+
+    def test_numbers_of_classes(self):
+        """They are those of the plan: a class of broken files keeps its number, also in a split that has none of it, when it
+        is mended and tried again, and for VoxelDataset; a folder without meshes has none."""
+        meshes, out, tars, packed = (os.path.join(self.folder.name, name) for name in ("some", "few", "few-tars", "few.zarr"))
+        for place, text in (("b/train/x.off", None), ("c/train/x.off", "OFF\n3 nothing\n"), ("d/test/x.off", None),
+                            ("a/train/readme.txt", "none")):
+            os.makedirs(os.path.dirname(os.path.join(meshes, place)))
+            shutil.copy(os.path.join(SAMPLES, "cube.off"), os.path.join(meshes, place))
+            if text:
+                with open(os.path.join(meshes, place), "w") as file:
+                    file.write(text)
+        os.makedirs(os.path.join(meshes, "e", "train"))
+        wanted = {None: {"b": 0, "d": 2}, "train": {"b": 0}, "test": {"d": 2}}
+        voxmend.batch.run(meshes, out, options="-r 8")
+        for mended in False, True:
+            if mended:
+                shutil.copy(os.path.join(SAMPLES, "cube.off"), os.path.join(meshes, "c", "train", "x.off"))
+                voxmend.batch.run(meshes, out, options="-r 8 --retry unreadable")
+                wanted[None]["c"] = wanted["train"]["c"] = 1
+            voxmend.batch.export(out, tars, to="webdataset")
+            roots = [out, tars]
+            if zarr is not None:
+                voxmend.batch.export(out, packed, to="zarr")
+                roots.append(packed)
+            for split, labels in wanted.items():
+                for root in roots:
+                    data = GridDataset(root, split)
+                    self.assertEqual(data.classes, ["b", "c", "d"])
+                    self.assertEqual({name.split("/")[0]: data[i][1] for i, name in enumerate(data.names)}, labels)
+                models = VoxelDataset(meshes, split, 8)
+                self.assertEqual(models.classes, ["b", "c", "d"])
+                self.assertEqual({os.path.relpath(file, meshes)[0]: label for file, label in zip(models.files, models.labels)
+                                  if mended or "/c/" not in file}, labels)
+            for root in roots[1:]:
+                remove(root)
 
     def test_padded_and_not_cubic(self):
         out = os.path.join(self.folder.name, "flat")

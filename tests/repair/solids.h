@@ -195,4 +195,16 @@ static inline void assert_united(const vxm_soup *soup) {
   vxm_soup_destroy(apart);
 }
 
+/** A prism over a bow tie, upright: one half, of 16/3, is wound outward, the other, of 4/3, is not. */
+static inline void add_bow(vxm_soup *soup) {
+  static const double corners[4][2] = {{0, 2}, {4, 0}, {4, 4}, {0, 0}};
+  uint32_t first = (uint32_t)soup->vertex_count;
+  for (int i = 0; i < 8; i++)
+    add_vertex(soup, corners[i % 4][0], corners[i % 4][1], i / 4);
+  for (uint32_t i = 0; i < 4; i++)
+    add_face(soup, (uint32_t[]){first + i, first + (i + 1) % 4, first + (i + 1) % 4 + 4, first + i + 4}, 4);
+  add_face(soup, (uint32_t[]){first + 3, first + 2, first + 1, first}, 4);
+  add_face(soup, (uint32_t[]){first + 4, first + 5, first + 6, first + 7}, 4);
+}
+
 #endif

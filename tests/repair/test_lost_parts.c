@@ -3,6 +3,7 @@
 #include "repair_test.h"
 #include "solids.h"
 
+#include "repair/exact/union_loss.h"
 #include "repair/state/lost_parts.h"
 
 /** Three bodies: a box, a ball, and a small box in a far corner. */
@@ -22,7 +23,7 @@ static size_t count_lost(const vxm_soup *before, const vxm_soup *after, size_t l
   size_t count = lost.count;
   if (lost_part != SIZE_MAX)
     assert_true(lost.lost[lost_part]);
-  vxm_lost_parts_free(&lost, context);
+  vxm_lost_parts_free(&lost, before->context);
   return count;
 }
 
@@ -95,9 +96,53 @@ static void stacks_are_asked_by_few_lines(void **state) {
   vxm_context_destroy(small);
 }
 
+static int64_t count_emptied(const vxm_soup *before, const vxm_soup *united) {
+  int64_t count = -1;
+  assert_int_equal(vxm_union_loss_find(&count, before, united, NULL), VXM_OK);
+  return count;
+}
+
+/** Half of a bow tie, as unions leave it, is a loss, and the other one too; a cavity that cuts through its
+ * body, or bodies that swallow others, are none. */
+static void what_unions_lose(void **state) {
+  (void)state;
+  vxm_soup *bow = new_soup(context), *half = new_soup(context);
+  add_bow(bow);
+  const double x = 4.0 / 3, outline[3][2] = {{x, x}, {4, 0}, {4, 4}};
+  for (int i = 0; i < 6; i++)
+    add_vertex(half, outline[i % 3][0], outline[i % 3][1], i / 3);
+  for (uint32_t i = 0; i < 3; i++)
+    add_face(half, (uint32_t[]){i, (i + 1) % 3, (i + 1) % 3 + 3, i + 3}, 4);
+  add_face(half, (uint32_t[]){2, 1, 0}, 3);
+  add_face(half, (uint32_t[]){3, 4, 5}, 3);
+  assert_int_equal(count_emptied(bow, half), 1);
+  assert_int_equal(count_emptied(bow, bow), 0);
+  add_cuboid(half, -1, -1, -1, 2, 3, 2); /* which has the other half in it */
+  assert_int_equal(count_emptied(bow, half), 0);
+  vxm_soup_destroy(half);
+  vxm_soup_destroy(bow);
+
+  vxm_soup *before = new_soup(context), *after = new_soup(context);
+  add_cuboid(before, 0, 0, 0, 4, 1, 1);
+  size_t faces = before->face_count;
+  add_cuboid(before, 1, -1, -1, 3, 2, 2);
+  add_cuboid(after, 0, 0, 0, 1, 1, 1);
+  add_cuboid(after, 3, 0, 0, 4, 1, 1);
+  assert_int_equal(count_emptied(before, after), 2);
+  turn_faces(before, faces);
+  assert_int_equal(count_emptied(before, after), 0);
+  vxm_soup_destroy(after);
+  after = new_soup(context);
+  add_cuboid(after, 0, 0, 0, 1, 1, 1);
+  assert_int_equal(count_emptied(before, after), 1);
+  vxm_soup_destroy(after);
+  vxm_soup_destroy(before);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(missing_bodies_are_found), cmocka_unit_test(mended_bodies_are_not),
-      cmocka_unit_test(halves_and_what_is_open), cmocka_unit_test(stacks_are_asked_by_few_lines)};
+      cmocka_unit_test(halves_and_what_is_open), cmocka_unit_test(stacks_are_asked_by_few_lines),
+      cmocka_unit_test(what_unions_lose)};
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

@@ -144,6 +144,14 @@ static void parts_are_welded_first(void **state) {
   vxm_soup_destroy(box);
 }
 
+static void turn_faces(vxm_soup *soup, size_t first) {
+  for (size_t c = first; c < soup->corner_count; c += 4) {
+    uint32_t kept = soup->indices[c + 1];
+    soup->indices[c + 1] = soup->indices[c + 3];
+    soup->indices[c + 3] = kept;
+  }
+}
+
 /** What was a cavity is a body once the shell around it is gone, and is turned for it. */
 static void cavity_without_its_shell(void **state) {
   vxm_soup *soup = new_soup(*state);
@@ -153,11 +161,7 @@ static void cavity_without_its_shell(void **state) {
   for (size_t v = 8; v < soup->vertex_count; v++)
     for (int a = 1; a < 3; a++)
       soup->positions[3 * v + (size_t)a] += 1;
-  for (size_t c = first; c < soup->corner_count; c += 4) {
-    uint32_t kept = soup->indices[c + 1];
-    soup->indices[c + 1] = soup->indices[c + 3];
-    soup->indices[c + 3] = kept;
-  }
+  turn_faces(soup, first);
   add_box(soup, 10, 5, 4, false);
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   REPAIR_REPORT(report);
@@ -169,6 +173,52 @@ static void cavity_without_its_shell(void **state) {
   assert_true(fabs(report.after->volume - (1 + 125)) < 1e-9);
   assert_repair_is_done(out, &options);
   vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+}
+
+/** A cube with its corners on the diagonal, in or out. */
+static void add_shell(vxm_soup *soup, double at, double size, bool inward) {
+  size_t first = soup->corner_count, vertex = soup->vertex_count;
+  add_box(soup, at, size, 1, false);
+  for (size_t v = vertex; v < soup->vertex_count; v++)
+    for (int a = 1; a < 3; a++)
+      soup->positions[3 * v + (size_t)a] += at;
+  if (inward)
+    turn_faces(soup, first);
+}
+
+/** Cavities are no crumbs: they stay with what they are in, and go with it; what is in them is a part of its
+ * own. */
+static void cavities_stay(void **state) {
+  static const struct {
+    double drop, volume;
+    int64_t faces;
+  } cases[] = {
+      {0.001, 1000 - 27 - 1 + 0.125 + 8 - 1, 36},
+      {0.2, 1000 - 27 - 1 + 8 - 1, 30},
+      {1.5, 1000 - 27 - 1 + 8 - 1, 30},
+      {9, 1000 - 27 - 1, 18},
+      {500, 1000 - 27 - 1, 18},
+  };
+  vxm_soup *soup = new_soup(*state);
+  add_shell(soup, 0, 10, false);
+  add_shell(soup, 2, 3, true);
+  add_shell(soup, 3, 0.5, false); /* in the first cavity */
+  add_shell(soup, 7, 1, true);
+  add_shell(soup, 20, 2, false);
+  add_shell(soup, 20.5, 1, true); /* goes with its shell */
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (int by_faces = 0; by_faces < 2; by_faces++) {
+      vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+      options.drop_volume = cases[i].drop;
+      options.drop_faces = by_faces ? 7 : 0;
+      REPAIR_REPORT(report);
+      vxm_soup *out = repaired(soup, &options, &report);
+      assert_int_equal(out->face_count, by_faces ? 18 : cases[i].faces);
+      assert_true(fabs(report.after->volume - (by_faces ? 1000 - 27 - 1 : cases[i].volume)) < 1e-9);
+      assert_repair_is_done(out, &options);
+      vxm_soup_destroy(out);
+    }
   vxm_soup_destroy(soup);
 }
 
@@ -192,6 +242,7 @@ int main(void) {
       cmocka_unit_test(largest_stays),
       cmocka_unit_test(parts_are_welded_first),
       cmocka_unit_test(cavity_without_its_shell),
+      cmocka_unit_test(cavities_stay),
       cmocka_unit_test(options_refused),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

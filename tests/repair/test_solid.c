@@ -56,6 +56,7 @@ static void solids_of_boxes(void **state) {
     assert_true(report.self_intersections_before == (int64_t)count_meetings(soup));
     assert_int_equal(report.self_intersections_after, 0);
     assert_int_equal(report.union_failures, 0);
+    assert_int_equal(report.emptied_parts, 0);
     assert_solid(out);
     assert_true(fabs(volume_of(out) - volume) < 1e-4 * volume);
     vxm_soup_destroy(out);
@@ -89,6 +90,29 @@ static void solids_of_noisy_boxes(void **state) {
   }
   printf("%d of %d noisy unions are solids\n", reached, ROUNDS);
   assert_true(reached >= ROUNDS * 9 / 10);
+}
+
+/** What a surface that runs through itself winds round the other way goes, and that is told. */
+static void half_of_a_bow_is_told(void **state) {
+  (void)state;
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_SOLID;
+  for (int beside = 0; beside < 2; beside++) {
+    vxm_soup *soup = new_soup(context);
+    add_bow(soup);
+    if (beside) {
+      add_cuboid(soup, 10, 0, 0, 12, 1, 1);
+      add_cuboid(soup, 11, 0.5, 0.5, 13, 2, 2);
+    }
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+    vxm_soup *out = repair(soup, &options, &report);
+    assert_int_equal(report.emptied_parts, 1);
+    assert_solid(out);
+    double boxes = beside ? 2 + 4.5 - 0.25 : 0;
+    assert_true(fabs(volume_of(out) - 16.0 / 3 - boxes) < 1e-4);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
 }
 
 /** Open parts stay, each as it was, and the others are united. */
@@ -271,7 +295,7 @@ int main(void) {
       cmocka_unit_test(solids_of_boxes),       cmocka_unit_test(solids_of_noisy_boxes),
       cmocka_unit_test(open_parts_among_them), cmocka_unit_test(what_is_not_to_be_combined),
       cmocka_unit_test(wraps_keep_tags),       cmocka_unit_test(counted_beyond_the_list),
-      cmocka_unit_test(stopped_anywhere),
+      cmocka_unit_test(stopped_anywhere),      cmocka_unit_test(half_of_a_bow_is_told),
   };
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

@@ -274,10 +274,33 @@ static void test_coarse(void **state) {
   }
 }
 
+/** More than the model is wide is a mistake of units: what came of it had no volume. */
+static void test_too_thick(void **state) {
+  (void)state;
+  vxm_soup *soup = new_soup(context), *out = NULL;
+  add_wall(soup, (double[]){5, 5, 5}, (double[]){3, 0, 0}, (double[]){0, 4, 0}, 1);
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_CLOSED;
+  static const double thicknesses[] = {1e-3, 5, 5.001, 1e4, 1e30};
+  for (int i = 0; i < 5; i++) {
+    vxm_error error = VXM_ERROR_INIT;
+    options.thickness = thicknesses[i];
+    options.sheets = VXM_SHEETS_THICKEN;
+    vxm_status status = vxm_repair_run(&out, NULL, soup, &options, &error);
+    assert_int_equal(status, i < 2 ? VXM_OK : VXM_ERROR_ARGUMENT);
+    assert_true(i < 2 || strstr(error.text, "the diagonal of the whole model, 5"));
+    vxm_soup_destroy(i < 2 ? out : NULL);
+    options.sheets = VXM_SHEETS_DROP; /* nothing becomes that thick */
+    assert_int_equal(vxm_repair_run(&out, NULL, soup, &options, NULL), VXM_OK);
+    vxm_soup_destroy(out);
+  }
+  vxm_soup_destroy(soup);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_square), cmocka_unit_test(test_junctions),
                                      cmocka_unit_test(test_flaps),  cmocka_unit_test(test_twisted),
                                      cmocka_unit_test(test_random), cmocka_unit_test(test_repair),
-                                     cmocka_unit_test(test_coarse)};
+                                     cmocka_unit_test(test_coarse), cmocka_unit_test(test_too_thick)};
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

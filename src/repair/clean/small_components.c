@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/components.h"
+#include "mesh/containment.h"
 #include "mesh/geometry.h"
 #include "repair/state/repair_state.h"
 
 typedef struct part {
   int64_t faces;
-  double area, volume;  /**< in the frame */
-  bool open;            /**< an edge has an odd number of its faces */
+  double area, volume; /**< in the frame */
+  bool open;           /**< an edge has an odd number of its faces */
+  bool goes;
   const double *origin; /**< one of its corners: what is small loses nothing far from the middle */
 } part;
 
@@ -56,15 +58,51 @@ static bool is_small(const dropping *d, const part *p) {
   return p->faces < options->drop_faces || (!p->open && fabs(p->volume) < options->drop_volume * cube);
 }
 
+static bool is_cavity(const part *p) {
+  return !p->open && p->volume < 0;
+}
+
+/** A cavity in a body that stays is no crumb: without it the body would be another one. */
+static vxm_status keep_cavities(dropping *d, vxm_error *error) {
+  bool any = false;
+  for (size_t p = 0; p < d->part_count && !any; p++)
+    any = d->parts[p].goes && is_cavity(&d->parts[p]);
+  if (!any)
+    return VXM_OK;
+  vxm_status status = VXM_OK;
+  vxm_containment within;
+  uint8_t *solid = vxm_repair_state_scratch(d->state, d->part_count, sizeof *solid, &status, error);
+  if (!solid)
+    return status;
+  for (size_t p = 0; p < d->part_count; p++)
+    solid[p] = !d->parts[p].open;
+  status = vxm_containment_build(&within, d->state->soup, d->label, d->part_count, solid, error);
+  vxm_free(d->state->context, solid);
+  for (size_t p = 0; p < d->part_count && status == VXM_OK; p++) {
+    uint32_t around = (uint32_t)p;
+    while (around != VXM_NO_COMPONENT && d->parts[around].goes && is_cavity(&d->parts[around]))
+      around = within.parent[around];
+    if (is_cavity(&d->parts[p]) && around != VXM_NO_COMPONENT)
+      d->parts[p].goes = d->parts[around].goes;
+  }
+  if (status == VXM_OK)
+    vxm_containment_destroy(&within);
+  return status;
+}
+
 static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
   vxm_repair_state *state = d->state;
   size_t faces = state->soup->face_count, largest = largest_part(d);
-  vxm_status status = VXM_OK;
+  for (size_t p = 0; p < d->part_count; p++)
+    d->parts[p].goes = p != largest && is_small(d, &d->parts[p]);
+  vxm_status status = keep_cavities(d, error);
+  if (status != VXM_OK)
+    return status;
   uint8_t *remove = vxm_repair_state_scratch(state, faces, sizeof *remove, &status, error);
   if (!remove)
     return status;
   for (size_t f = 0; f < faces; f++)
-    remove[f] = d->label[f] != largest && is_small(d, &d->parts[d->label[f]]);
+    remove[f] = d->parts[d->label[f]].goes;
   for (size_t f = 0; f < faces && state->provenance && state->soup->face_parts; f++)
     if (remove[f])
       vxm_provenance_drop(state->provenance, state->soup->face_parts[f]);
@@ -77,7 +115,8 @@ static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
 
 /**
  * Removes the components that are smaller than the options say: by faces, or, if they are closed, by volume.
- * The one with the largest area always stays.
+ * The one with the largest area always stays, and cavities, closed ones that look inward, with what they are
+ * in.
  */
 vxm_status vxm_pass_small_parts(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;

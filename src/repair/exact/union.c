@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/bits.h"
 #include "mesh/components.h"
+#include "repair/exact/union_loss.h"
 #include "repair/state/repair_state.h"
 #include "repair/state/self_intersections.h"
 
@@ -115,6 +117,10 @@ vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *err
   if (status == VXM_OK)
     status = note_swallowed(state, soup, origin, error);
   *changed = report.united > 0 || report.cut > 0;
+  int64_t emptied = 0;
+  if (status == VXM_OK && *changed)
+    status = vxm_union_loss_find(&emptied, state->soup, soup, error);
+  state->emptied = vxm_max(state->emptied, emptied);
   if (status == VXM_OK && *changed) {
     state->counts[VXM_PASS_UNION] += report.united + report.cut;
     return vxm_repair_state_adopt(state, soup, origin, error);

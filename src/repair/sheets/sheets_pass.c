@@ -13,15 +13,22 @@ static const double DEFAULT_THICKNESS = 0.002;
  * is written. */
 enum { UNITS = 16 };
 
-static double thickness_of(vxm_repair_state *state) {
+static vxm_status find_thickness(double *out, vxm_repair_state *state, vxm_error *error) {
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
-  double largest = 0, given = state->options.thickness;
+  double largest = 0, given = state->options.thickness, diagonal = frame.diagonal / frame.scale;
   for (int i = 0; i < 6; i++)
     largest = fmax(largest, fabs(extent.bounds[i]));
   double unit = largest * (state->options.single_precision ? 0x1p-23 : 0x1p-52);
-  return fmax(given > 0 ? given : DEFAULT_THICKNESS * frame.diagonal / frame.scale, UNITS * unit);
+  *out = fmax(given > 0 ? given : DEFAULT_THICKNESS * diagonal, UNITS * unit);
+  if (given > diagonal)
+    return vxm_fail(
+        error, VXM_ERROR_ARGUMENT,
+        "sheets: a thickness of %g is more than the diagonal of the whole model, %g; give less, in "
+        "model units",
+        given, diagonal);
+  return VXM_OK;
 }
 
 static bool is_asked_for(const vxm_repair_state *state) {
@@ -71,10 +78,13 @@ static vxm_status replace(vxm_repair_state *state, const uint8_t *sheets, vxm_er
   if (status != VXM_OK)
     return status;
   size_t kept = rest->face_count;
+  double thickness = 0;
   if (state->options.sheets == VXM_SHEETS_DROP)
     note_dropped(state, sheets);
   else
-    status = vxm_thicken(rest, &origin, state->soup, sheets, thickness_of(state), error);
+    status = find_thickness(&thickness, state, error);
+  if (status == VXM_OK && state->options.sheets != VXM_SHEETS_DROP)
+    status = vxm_thicken(rest, &origin, state->soup, sheets, thickness, error);
   if (status == VXM_OK) {
     state->counts[VXM_PASS_SHEETS] += (int64_t)(rest->face_count - kept);
     status = vxm_repair_state_adopt(state, rest, origin, error);

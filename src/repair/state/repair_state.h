@@ -72,6 +72,7 @@ typedef struct vxm_repair_state {
   int64_t unfilled;                        /**< holes that were to be filled and could not be */
   int64_t fanned;                          /**< holes that a module left to fans */
   int64_t ununited;           /**< parts that were to be united and still cut through themselves or others */
+  int64_t emptied;            /**< closed parts of whose inside unions have taken something away */
   int64_t tries;              /**< of the union */
   int64_t wrapped;            /**< parts that were wrapped as the union had left them */
   bool collapses;             /**< the shortest edges of unions are collapsed */

@@ -4,6 +4,7 @@
 #include "mesh/geometry.h"
 #include "mesh/near_vertices.h"
 #include "mesh/sort.h"
+#include "mesh/vertex_net.h"
 #include "repair/weld/net_merge.h"
 #include "repair/weld/rejoin_jittered.h"
 
@@ -19,13 +20,20 @@ static const double EDGE_PART = 0.25;
 
 /* ---- With a given tolerance: all vertices ---- */
 
+/** Groups that are near each other and far from all others first, whatever the order of vertices; then what
+ * is left, as whoever gives a tolerance wants no two vertices within it. */
 static vxm_status weld_all(vxm_repair_state *state, uint32_t *map, vxm_error *error) {
+  const vxm_soup *soup = state->soup;
+  double tolerance = state->options.weld_tolerance;
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
   /* a mark of use is the role of a member */
   _Static_assert(VXM_NEAR_MEMBER == 1, "marks serve as roles");
-  return vxm_near_vertices_group(state->context, state->soup->positions, state->soup->vertex_count,
-                                 state->used, state->options.weld_tolerance, map, error);
+  vxm_status status = vxm_near_vertices_group(state->context, soup->positions, soup->vertex_count,
+                                              state->used, tolerance, map, error);
+  return status == VXM_OK ? vxm_vertex_net(state->context, soup->positions, soup->vertex_count, state->used,
+                                           tolerance, map, error)
+                          : status;
 }
 
 /* ---- Automatic: cracks ---- */
@@ -156,10 +164,9 @@ static vxm_status merge(vxm_repair_state *state, const uint32_t *map, bool torn,
 }
 
 /**
- * Merges near vertices: with a given tolerance wherever vxm_near_vertices_group merges them, else only where
- * that closes cracks, and where there is none of the usual kind, in soups that were torn apart. As a merged
- * group has no other vertex near it, running the pass again, after others, merges new groups or none, but
- * never adds to an old one.
+ * Merges near vertices: with a given tolerance all of them, else only where that closes cracks, and where
+ * there is none of the usual kind, in soups that were torn apart. As a merged group has no other vertex near
+ * it, running the pass again, after others, merges new groups or none, but never adds to an old one.
  */
 vxm_status vxm_pass_tolerant_weld(vxm_repair_state *state, bool *changed, vxm_error *error) {
   bool wanted;
