@@ -322,6 +322,51 @@ static void test_what_is_refused(void **state) {
   vxm_soup_destroy(soup);
 }
 
+/** Whatever the limit beyond what the mesh itself takes, there is an error or the whole result, and nothing
+ * is left. */
+static void test_any_limit(void **state) {
+  (void)state;
+  vxm_rng rng = {4};
+  block b = fill_block(&rng, 0);
+  const drawing how = {.shares = true, .same_diagonal = true};
+  vxm_context *usual = context;
+  int64_t faces = -1;
+  int refused = 0;
+  bool done = false;
+  for (uint64_t limit = 0; !done; limit = limit ? limit + 1024 : 1) {
+    vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+    options.threads = 1;
+    options.memory_limit = faces < 0 ? 0 : limit;
+    assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
+    vxm_soup *soup = draw(&b, &how);
+    vxm_mesh *apart = NULL, *made = NULL;
+    vxm_error error = VXM_ERROR_INIT;
+    uint64_t taken = vxm_context_peak_bytes(context);
+    vxm_status status = vxm_mesh_divide(&apart, soup, VXM_LABEL_GROUP, &error);
+    if (status == VXM_OK)
+      status = vxm_mesh_prepare(&made, NULL, apart, NULL, &error);
+    if (faces < 0) { /* without a limit, to begin with */
+      assert_int_equal(status, VXM_OK);
+      faces = vxm_mesh_face_count(made);
+      limit = taken;
+    } else if (status == VXM_OK) {
+      assert_int_equal(vxm_mesh_face_count(made), faces);
+      done = true;
+    } else {
+      assert_int_equal(status, VXM_ERROR_MEMORY_LIMIT);
+      assert_int_equal(error.code, VXM_ERROR_MEMORY_LIMIT);
+      assert_null(made);
+      refused++;
+    }
+    vxm_mesh_destroy(made);
+    vxm_mesh_destroy(apart);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+  }
+  assert_true(refused > 20);
+  context = usual;
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_full_blocks),
@@ -332,6 +377,7 @@ int main(void) {
       cmocka_unit_test(test_patches_beside_a_body),
       cmocka_unit_test(test_sheet_of_two_sides),
       cmocka_unit_test(test_what_is_refused),
+      cmocka_unit_test(test_any_limit),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }
