@@ -92,8 +92,9 @@ def labels(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
 
     Args:
         by: "part": connected components; "group": groups or named parts of the file, or nodes of a scene; "material".
-            Bodies have what they enclose; groups and materials that are patches of a surface have the voxels at it.
-        others: as for `voxmend.voxelize`, which sets the same voxels.
+            Bodies have what they enclose, also where they share walls: each closed group or material is repaired by itself.
+            Those that are patches of a surface have the voxels at it.
+        others: as for `voxmend.voxelize`, which sets the same voxels but where the repair of all groups together does other.
 
     Returns:
         a field of uint16, 0 where no voxel is set, with its table in `labels` and `label_names`, and a LabelReport
@@ -104,7 +105,7 @@ def labels(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
     place = Place("labels", resolution, pitch, voxel_size, fit, pad, bounds, like)
     options = _core.new("vxm_label_options", by=_core.choice("labels: by", by, "VXM_LABEL_"))
     rules = Rules(mode, surface, method, vote, parts, cavities, thin)
-    with Work(mesh, place, rules, Run(repair, engine, progress, timeout)) as work:
+    with Work(mesh, place, rules, Run(repair, engine, progress, timeout), by) as work:
         space, model = work.space(), work.model()
         values, solid = _values_for(space, numpy.uint16), _core.new("vxm_voxelize_report")
         report = _core.new("vxm_label_report", voxelize=solid)

@@ -74,6 +74,14 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
     return Mesh._of(made, RepairReport._of(report, passes=passes))
 
 
+def divided(mesh: Mesh, by: str) -> Mesh:
+    """The mesh with the vertices and bodies of each closed label by themselves, as labels are made of; by "part" it stays."""
+    if by == "part":
+        return mesh
+    kind = _core.choice("labels: by", by, "VXM_LABEL_")
+    return Mesh._of(_core.create("vxm_mesh", lib.vxm_mesh_divide, mesh._pointer, kind, destroy=lib.vxm_mesh_destroy))
+
+
 def _set_weld(options: Any, weld: Union[str, float]) -> None:
     if isinstance(weld, str) and weld != "tolerance":
         options.weld = _core.choice("repair: weld", weld, "VXM_WELD_")

@@ -14,7 +14,7 @@ from ._mesh import Mesh
 from ._mesh_sources import MeshLike, as_mesh
 from ._progress import watch
 from ._records import VoxelizeReport
-from ._repair import repair as repair_mesh
+from ._repair import divided, repair as repair_mesh
 from ._space import Place
 from ._types import Progress
 
@@ -79,8 +79,9 @@ class Work:
     `source` is the mesh to voxelize, `space` says where, `options` how.
     """
 
-    def __init__(self, mesh: MeshLike, place: Place, rules: Rules, run: Run):
-        self._mesh, self._place, self._run = mesh, place, run
+    def __init__(self, mesh: MeshLike, place: Place, rules: Rules, run: Run, by: str = "part"):
+        """`by`: labels that the mesh is taken apart by before it is repaired; parts stay together."""
+        self._mesh, self._place, self._run, self._by = mesh, place, run, by
         self._stack = contextlib.ExitStack()
         self._engine: Optional[Engine] = None
         place.check()
@@ -100,7 +101,8 @@ class Work:
         self._stack.enter_context(watch(self._run.progress, self._run.timeout))
         self.options.engine, self._engine = self._stack.enter_context(used(self._run.engine))
         self.original = as_mesh(self._mesh, self._run.colors)
-        self.source = repair_mesh(self.original, separate=True) if repairs else self.original
+        source = divided(self.original, self._by)
+        self.source = repair_mesh(source, separate=True) if repairs else source
 
     def __exit__(self, *_: Any) -> None:
         self._stack.close()

@@ -3,16 +3,39 @@
 #include "api/api_results.h"
 #include "export/labels.h"
 #include "grid/bit_transpose.h"
+#include "voxel/labels/divide.h"
+
+static vxm_status check_kind(vxm_label_by by, vxm_error *error) {
+  return (unsigned)by <= VXM_LABEL_MATERIAL
+             ? VXM_OK
+             : vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: %d is none of the kinds of labels", (int)by);
+}
 
 static vxm_status check(vxm_label_options *chosen, const vxm_space *space, const vxm_label_options *options,
                         vxm_error *error) {
   *chosen = (vxm_label_options)VXM_LABEL_OPTIONS_INIT;
   vxm_status status = VXM_OPTIONS_READ(chosen, options, "labels", error);
-  if (status != VXM_OK)
-    return status;
-  if ((unsigned)chosen->by > VXM_LABEL_MATERIAL)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: %d is none of the kinds of labels", (int)chosen->by);
-  return vxm_space_check(space, error);
+  if (status == VXM_OK)
+    status = check_kind(chosen->by, error);
+  return status == VXM_OK ? vxm_space_check(space, error) : status;
+}
+
+vxm_status vxm_mesh_divide(vxm_mesh **out, const vxm_mesh *mesh, vxm_label_by by, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: an argument is NULL");
+  vxm_mesh *made = NULL;
+  vxm_status status = check_kind(by, error);
+  if (status == VXM_OK)
+    status = vxm_soup_copy(&made, mesh, error);
+  if (status == VXM_OK)
+    status = vxm_labels_divide(made, by, error);
+  if (status == VXM_OK)
+    *out = made;
+  else
+    vxm_soup_destroy(made);
+  return status;
 }
 
 vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,

@@ -205,13 +205,15 @@ static int read_mesh(cli_run *cli, subject *out, const request *given) {
   cli_input input;
   vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
   vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
-  int status = cli_read_repaired(cli, &input, given->input, given->is_page ? NULL : &repair);
+  int status = given->is_page ? cli_read_repaired(cli, &input, given->input, NULL)
+                              : cli_read_divided(cli, &input, given->input, given->labels.by, &repair);
   *(given->is_page ? &out->mesh : &out->prepared) = input.mesh;
   if (!given->is_page)
     out->mesh = input.as_read;
   if (status != CLI_DONE || !given->is_page)
     return status;
-  if (vxm_mesh_prepare(&out->prepared, &report, out->mesh, &repair, &cli->error) != VXM_OK)
+  if (vxm_mesh_divide(&out->prepared, out->mesh, given->labels.by, &cli->error) != VXM_OK ||
+      vxm_mesh_prepare_in_place(&out->prepared, &report, &repair, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, given->input, out->prepared, vxm_mesh_warning_count(out->mesh));
   cli_warn_lost(cli, given->input, &report);

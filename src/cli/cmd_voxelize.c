@@ -212,7 +212,7 @@ static int run(cli_run *cli) {
   }
   voxelize_outcome results = {.voxelize = VXM_VOXELIZE_REPORT_INIT, .estimate = VXM_ESTIMATE_INIT};
   const vxm_repair_options *repair = given.no_repair ? NULL : &given.repair;
-  if (cli_read_repaired(cli, &results.input, given.input, repair) != CLI_DONE)
+  if (cli_read_divided(cli, &results.input, given.input, given.field.label_options.by, repair) != CLI_DONE)
     return CLI_FAILED;
   cli_color_take(&given.field, &results.input);
   int status = given.baseline_name ? make_baseline(cli, &given, &results) : make_file(cli, &given, &results);

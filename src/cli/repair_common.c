@@ -91,6 +91,20 @@ static void drop_as_read(cli_input *input) {
 }
 
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options) {
+  return cli_read_divided(cli, input, path, VXM_LABEL_PART, options);
+}
+
+static vxm_status divide(cli_run *cli, vxm_mesh **mesh, vxm_label_by by) {
+  vxm_mesh *whole = *mesh;
+  if (by == VXM_LABEL_PART)
+    return VXM_OK;
+  vxm_status status = vxm_mesh_divide(mesh, whole, by, &cli->error);
+  vxm_mesh_destroy(whole);
+  return status;
+}
+
+int cli_read_divided(cli_run *cli, cli_input *input, const char *path, vxm_label_by by,
+                     const vxm_repair_options *options) {
   *input = (cli_input){.path = path, .repair = VXM_REPAIR_REPORT_INIT};
   double start = cli_clock();
   if (vxm_mesh_read_with(&input->mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
@@ -102,6 +116,8 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
   input->faces = vxm_mesh_face_count(input->mesh);
   double read = cli_clock();
   input->read_ms = read - start;
+  if (divide(cli, &input->mesh, by) != VXM_OK)
+    return cli_fail(cli);
   if (!options)
     return CLI_DONE;
   vxm_status status;

@@ -32,5 +32,8 @@ void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *repo
 /** Reads, and repairs unless `options` is NULL. After CLI_FAILED a line was printed and input->mesh is NULL.
  */
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options);
+/** The same, taken apart by labels before it is repaired; by VXM_LABEL_PART it stays together. */
+int cli_read_divided(cli_run *cli, cli_input *input, const char *path, vxm_label_by by,
+                     const vxm_repair_options *options);
 
 #endif

@@ -267,14 +267,22 @@ static size_t first_larger(const builder *b, double size) {
  * will do. */
 enum { TRIES_MAX = 256 };
 
-static vxm_status find_parent(builder *b, uint32_t component, uint32_t *parent) {
+static uint32_t set_of(const builder *b, uint32_t component) {
+  return b->soup->face_sets[b->faces[b->bodies[component].first]];
+}
+
+/** @param own_set only those of the component's set come into question */
+static vxm_status find_parent(builder *b, uint32_t component, bool own_set, uint32_t *parent) {
   const body *inner = &b->bodies[component];
   vxm_box_tree_search(&b->around, inner->box, first_larger(b, inner->size));
-  for (int tries = 0; tries < TRIES_MAX; tries++) {
+  for (int tries = 0, looks = 0; tries < TRIES_MAX && looks < 16 * TRIES_MAX; looks++) {
     uint32_t place = vxm_box_tree_next(&b->around);
     if (place == VXM_NO_BOX)
       break;
+    if (own_set && set_of(b, b->order[place]) != set_of(b, component))
+      continue;
     bool within = false;
+    tries++;
     vxm_status status = contains(b, b->order[place], component, &within);
     if (status != VXM_OK)
       return status;
@@ -290,10 +298,13 @@ static bool find_parents(builder *b, uint32_t *parents) {
   b->inside = allocate(b, b->count, sizeof *b->inside);
   if (!b->inside)
     return false;
-  for (size_t i = 0; i < b->order_count; i++)
+  for (size_t i = 0; i < b->order_count; i++) {
+    uint32_t *parent = &parents[b->order[i]];
     if (vxm_ask(b->context, &b->error) != VXM_OK ||
-        find_parent(b, b->order[i], &parents[b->order[i]]) != VXM_OK)
+        (b->soup->face_sets && find_parent(b, b->order[i], true, parent) != VXM_OK) ||
+        (*parent == VXM_NO_COMPONENT && find_parent(b, b->order[i], false, parent) != VXM_OK))
       return false;
+  }
   return true;
 }
 

@@ -10,7 +10,8 @@
 typedef struct vxm_containment {
   vxm_context *context;
   size_t count;     /**< components */
-  uint32_t *parent; /**< the smallest solid component around each, or VXM_NO_COMPONENT */
+  uint32_t *parent; /**< the smallest solid component around each, of its set if there is one; or
+                       VXM_NO_COMPONENT */
   double *volume;   /**< signed, about the middle of the component's box: negative if it is wound inward */
 } vxm_containment;
 
@@ -22,6 +23,8 @@ typedef struct vxm_containment {
  * @param solid        per component: whether it bounds a volume; the others have and are no parents. NULL =
  * all
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ *
+ * Where soup->face_sets tells of sets, components around it that are of its own set go before others.
  *
  * A component lies inside another one if its box does and if most of a few sample points on it do, by
  * crossings of rays along the axes, so that a few missing or turned faces do no harm.

@@ -42,6 +42,7 @@ void vxm_soup_destroy(vxm_soup *soup) {
   vxm_appearance_destroy(soup->appearance);
   vxm_free(context, soup->part_changes);
   vxm_free(context, soup->part_states);
+  vxm_free(context, soup->face_sets);
   vxm_free(context, soup->face_parts);
   vxm_free(context, soup->components);
   vxm_free(context, soup->face_tags);

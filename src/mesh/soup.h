@@ -39,6 +39,9 @@ struct vxm_mesh {
   vxm_part_change *part_changes; /**< part_count, or NULL */
   vxm_part_state *part_states;   /**< what they point to: all before, then all after */
   size_t part_count;
+  uint32_t *face_sets; /**< face_count, or NULL: sets of faces that have nothing to do with each other
+                          (mesh/face_sets.h); those of one share no vertex with others */
+  size_t set_count;    /**< numbered from 0 */
   /* What a repair has found out on its way, so that nobody has to look for it again. */
   size_t component_count; /**< as vxm_components counts them; 0 = not known */
   uint32_t *components;   /**< face_count, as vxm_components numbers them; NULL unless there are several */
@@ -49,8 +52,8 @@ struct vxm_mesh {
 vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *format, vxm_error *error);
 /** Same as vxm_mesh_destroy; NULL is allowed. */
 void vxm_soup_destroy(vxm_soup *soup);
-/** Copies all but the appearance, which is that of the mesh as read, and what a repair has found out;
- * warnings included. */
+/** Copies all but the appearance, which is that of the mesh as read, sets of faces, and what a repair has
+ * found out; warnings included. */
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
 
 /** Makes room for at least so many elements in all (amortized doubling beyond what is there). */

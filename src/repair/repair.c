@@ -4,6 +4,7 @@
 #include "mesh/census.h"
 #include "mesh/weld_soup.h"
 #include "repair/pipeline.h"
+#include "repair/repair_sets.h"
 
 #include <math.h>
 
@@ -157,6 +158,8 @@ vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_s
 
 vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                               const vxm_repair_options *options, vxm_error *error) {
+  if (in->face_sets)
+    return vxm_repair_prepare_sets(out, report, in, options, error);
   int64_t shared;
   vxm_repair_options apart = VXM_REPAIR_OPTIONS_INIT;
   if (options)
@@ -173,7 +176,7 @@ vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const v
  * as nobody asks for a vertex or a part of it as it is. */
 static bool is_welded_first(const vxm_soup *in, const vxm_repair_report *report,
                             const vxm_repair_options *options) {
-  return in->vertex_count == in->corner_count && !(report && report->before) &&
+  return in->vertex_count == in->corner_count && !in->face_sets && !(report && report->before) &&
          !(options && keeps_account(options));
 }
 

@@ -39,7 +39,8 @@
 vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                           const vxm_repair_options *options, vxm_error *error);
 
-/** As vxm_repair_run, with bodies separated that share faces; see vxm_mesh_prepare in voxmend.h. */
+/** As vxm_repair_run, with bodies separated that share faces, and sets of faces each by itself; see
+ * vxm_mesh_prepare and vxm_mesh_divide in voxmend.h. */
 vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                               const vxm_repair_options *options, vxm_error *error);
 

@@ -320,6 +320,24 @@ typedef enum vxm_label_by {
   VXM_LABEL_MATERIAL  /**< materials: what lies behind it */
 } vxm_label_by;
 
+/**
+ * Takes a mesh apart by its groups or materials, to be repaired, voxelized and labelled: bodies of an
+ * assembly share walls, which a repair of all together would remove, or take for those of one body. Each
+ * label that is closed by itself, every edge with an even number of its faces, gets vertices of its own;
+ * vxm_mesh_prepare repairs its faces as if they were alone, and what is a cavity is first looked for within
+ * it. So vxm_model_labels gives each closed label what it encloses. All other labels stay together, as
+ * patches of one surface are closed by each other. It is what voxmend voxelize --labels group and the Python
+ * package's labels do before they repair, or leave that out.
+ *
+ * The result has the faces and tags of the mesh. It is to be used with the functions of models and
+ * vxm_mesh_prepare; others, such as vxm_mesh_repair, take it for any mesh.
+ *
+ * @param by with VXM_LABEL_PART, or if no label is closed or there is but one, the result is a plain copy
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE beyond 65535 labels, or too many vertices;
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_mesh_divide(vxm_mesh **out, const vxm_mesh *mesh, vxm_label_by by, vxm_error *error);
+
 /** What labels are of, and the format of their file. */
 typedef struct vxm_label_options {
   size_t size;     /**< as the initializer sets it */
@@ -354,6 +372,10 @@ typedef struct vxm_label_report {
  * faces, voxelized alone as the options of the model say with VXM_MODE_SOLID, within their bounds. Of several
  * labels that claim a voxel, or of all where none does, it has the one with the face nearest to its centre;
  * among equally near ones, to seven digits, the lowest. The number of threads makes no difference.
+ *
+ * Bodies that share walls keep these for labels of groups or materials if the mesh went through
+ * vxm_mesh_divide before it was repaired; the voxels set are then those of each closed group, and of the
+ * rest.
  *
  * Groups and materials need not be bodies of their own. One is open if an odd number of its faces meet at an
  * edge, as those of a patch of a surface do at its border, or if no centre is inside its faces. What an open

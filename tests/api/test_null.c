@@ -175,6 +175,7 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_mesh_read_memory_with, 6, 5,                                                                       \
     vxm_mesh_read_memory_with(P(0, &out.mesh), P(1, context), P(2, off_text), strlen(off_text), P(3, "x"), \
                               P(4, &read_options), P(5, &error)))                                          \
+  X(vxm_mesh_divide, 3, 3, vxm_mesh_divide(P(0, &out.mesh), P(1, mesh), VXM_LABEL_GROUP, P(2, &error)))    \
   X(vxm_mesh_look, 3, 3, vxm_mesh_look(P(0, &out.look), P(1, mesh), P(2, &error)))                         \
   X(vxm_mesh_texture, 3, 3, vxm_mesh_texture(P(0, &out.texture), P(1, mesh), 0, P(2, &error)))             \
   X(vxm_reading_find, 2, 1, vxm_reading_find(P(0, &out.reading), P(1, &error)))                            \

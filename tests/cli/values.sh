@@ -29,6 +29,38 @@ run 'ls out'
 say "# coverage, labels, confidence and colours"
 run 'voxmend voxelize in/sphere.off -o c.npy -r 24 --coverage 2 --scalar uint8 -q && voxmend convert c.npy -o c.nrrd'
 run 'voxmend convert c.nrrd -o out/x.binvox'
+cat >pair.obj <<'END'
+v 0 0 0
+v 1 0 0
+v 3 0 0
+v 0 1 0
+v 1 1 0
+v 3 1 0
+v 0 0 1
+v 1 0 1
+v 3 0 1
+v 0 1 1
+v 1 1 1
+v 3 1 1
+g small
+f 1 4 5 2
+f 7 8 11 10
+f 1 2 8 7
+f 4 10 11 5
+f 1 7 10 4
+f 2 5 11 8
+g large
+f 2 5 6 3
+f 8 9 12 11
+f 2 3 9 8
+f 5 11 12 6
+f 3 6 12 9
+f 2 8 11 5
+END
+for more in '' --no-repair; do # boxes that share a wall
+  run "voxmend voxelize pair.obj -o pair.npy --voxel-size 0.25 --fit tight --labels group $more && grep -A1 name pair.npy.json"
+done
+run 'voxmend view pair.obj -o pair.html --labels group -r 12 && voxmend view pair.obj -o pair.png --labels group -r 12 -q'
 run 'voxmend voxelize in/sphere.off -o l.npy -r 24x20x22 --fit tight --labels part -q && voxmend convert l.npy -o l.binvox'
 run 'voxmend convert l.binvox -o l2.npy -q && voxmend convert l2.npy -o l3.binvox -q && cmp l3.binvox l.binvox && cmp l2.npy.json l.npy.json'
 run 'voxmend convert l.npy -o l.rle'

@@ -68,6 +68,10 @@ class Fields(unittest.TestCase):
         self.assertEqual(groups.label_names, {1: "left", 2: "right"})
         self.assertEqual([label.name for label in voxmend.labels(mesh, 24, by="material").labels], ["red"])
         self.assertEqual(int(groups.values[0, 12, 12]), 1)
+        walled = voxmend.Mesh(*boxes((1, (0, 0, 0)), (1, (1, 0, 0))), tags=["a/x", "b/y"], face_tags=tags[:len(tags) // 3 * 2])
+        for by, repair in (("group", True), ("material", True), ("group", False)):
+            shared = voxmend.labels(walled, 8, by=by, repair=repair)
+            self.assertEqual([label.voxels for label in shared.labels], [64, 64])
         for wrong in (dict(by="colour"), dict(by="group", mode="x")):
             with self.assertRaises(ValueError):
                 voxmend.labels(mesh, 8, **wrong)
