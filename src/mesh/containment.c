@@ -341,7 +341,7 @@ static vxm_status contains(builder *b, uint32_t outer, uint32_t inner, bool *res
   for (int axis = 2; axis >= 0 && status == VXM_OK; axis--) {
     for (int s = 0; s < count && status == VXM_OK; s++) {
       int more;
-      status = vxm_point_in_mesh_vote(inside, samples[s].point, axis, &more, &b->error);
+      status = vxm_point_in_mesh_surrounds(inside, samples[s].point, axis, &more, &b->error);
       rays += 2;
       votes += more;
     }

@@ -279,6 +279,25 @@ vxm_status vxm_point_in_mesh_winding(vxm_point_in_mesh *inside, const double poi
   return status;
 }
 
+typedef struct rays {
+  int odd[2], turns[2];
+} rays;
+
+static void count_both(double height, int turn, void *payload) {
+  rays *r = payload;
+  r->odd[height > 0] ^= 1;
+  r->turns[height > 0] += height > 0 ? turn : -turn;
+}
+
+vxm_status vxm_point_in_mesh_surrounds(vxm_point_in_mesh *inside, const double point[3], int axis, int *votes,
+                                       vxm_error *error) {
+  rays r = {{0}, {0}};
+  vxm_status status = for_each_crossing(inside, point, axis, count_both, &r, error);
+  bool wound = r.turns[0] != 0 && r.turns[0] == r.turns[1];
+  *votes = status != VXM_OK ? 0 : wound ? 2 : r.odd[0] + r.odd[1];
+  return status;
+}
+
 typedef struct way_in {
   double gap, next[2]; /**< below, above */
   bool odd[2];

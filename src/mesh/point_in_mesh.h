@@ -52,6 +52,10 @@ vxm_status vxm_point_in_mesh_vote(vxm_point_in_mesh *inside, const double point[
  */
 vxm_status vxm_point_in_mesh_winding(vxm_point_in_mesh *inside, const double point[3], int axis, double gap,
                                      int *above, int *below, vxm_error *error);
+/** As vxm_point_in_mesh_vote, and 2 where both rays tell that the faces wind round the point, though they
+ * cross an even number of them, as where a body lies in itself. */
+vxm_status vxm_point_in_mesh_surrounds(vxm_point_in_mesh *inside, const double point[3], int axis, int *votes,
+                                       vxm_error *error);
 /**
  * Whether a point lies on a face, or no farther than `gap` from its plane in its box.
  *
