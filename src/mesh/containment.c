@@ -6,16 +6,35 @@
 #include "mesh/nonfinite.h"
 #include "mesh/point_in_mesh.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { SAMPLES = 3 /**< points per component */ };
 
+/* A cavity may touch the skin around it where the skin reaches farthest, and then have its box in common with
+   it; and its faces may lie on those of the skin. Once vertices that touch have been moved apart, or rounded,
+   it even reaches out by as much. */
+
+/** Of the model's diagonal, and in units in the last place of its largest number as a 32-bit float, but not
+ * above MOST of the diagonal: how far what is within may reach out. */
+static const double LEEWAY = 1e-4, LEEWAY_UNITS = 16, LEEWAY_MOST = 1.0 / 64;
+
+/** Bits of the sizes of boxes, and of volumes, where those of one body are told to be larger than those of
+ * another in spite of that. */
+enum { SIZE_BITS = 10, VOLUME_BITS = 3 };
+
+/** Two that lie on each other, with volumes that differ by less than that, may be one that was drawn twice.
+ */
+static const double SMALLER = 0.9;
+
 typedef struct body {
-  double box[6]; /**< scaled; low above high if no corner is finite */
-  double size;   /**< volume of the box */
-  size_t first;  /**< of its faces in `faces` */
+  double box[6];  /**< scaled; low above high if no corner is finite */
+  double size;    /**< volume of the box */
+  double volume;  /**< without a sign */
+  double rank[3]; /**< what tells which one is larger: both, rounded, and the size */
+  size_t first;   /**< of its faces in `faces` */
   uint32_t component;
 } body;
 
@@ -28,6 +47,7 @@ typedef struct builder {
   size_t count;
   vxm_unit_scale frame;
   double bounds[6]; /**< scaled */
+  double leeway;    /**< scaled: how far a box may reach out of that around it */
   body *bodies;     /**< per component, and one more that ends the last one's faces */
   size_t *faces;    /**< grouped by component */
   uint32_t *order;  /**< solid components by increasing box */
@@ -99,12 +119,20 @@ static bool measure_bodies(builder *b) {
   return true;
 }
 
+static void choose_leeway(builder *b) {
+  double largest = 0, diagonal = b->frame.diagonal;
+  for (int a = 0; a < 6; a++)
+    largest = fmax(largest, fabs(b->bounds[a]));
+  b->leeway = fmin(LEEWAY * diagonal + LEEWAY_UNITS * (double)FLT_EPSILON * largest, LEEWAY_MOST * diagonal);
+}
+
 static void scale_boxes(builder *b) {
   static const double nowhere[6] = {0};
   bool somewhere = b->bounds[0] <= b->bounds[3];
   b->frame = vxm_unit_scale_of(somewhere ? b->bounds : nowhere);
   for (int a = 0; a < 6; a++)
     b->bounds[a] = somewhere ? b->bounds[a] * b->frame.scale : 0;
+  choose_leeway(b);
   for (size_t i = 0; i < b->count; i++) {
     double *box = b->bodies[i].box;
     for (int a = 0; a < 6; a++)
@@ -149,17 +177,39 @@ static bool sum_volumes(builder *b, double *volume) {
       return false;
     volume[b->labels[f]] = add_cones(b, f, end, volume[b->labels[f]]);
   }
-  for (size_t i = 0; i < b->count; i++)
+  for (size_t i = 0; i < b->count; i++) {
+    b->bodies[i].volume = fabs(volume[i]);
     volume[i] = volume[i] / scale / scale / scale;
+  }
   return true;
 }
 
 /* ---- Candidates: solid components by increasing box ---- */
 
+/** Rounds to so many bits, so that what should be the same is, but for few numbers. */
+static double rounded(double x, int bits) {
+  int exponent = 0;
+  double part = frexp(x, &exponent);
+  return ldexp(rint(ldexp(part, bits)), exponent - bits);
+}
+
+static void rank(body *b) {
+  b->rank[0] = rounded(b->size, SIZE_BITS);
+  b->rank[1] = rounded(b->volume, VOLUME_BITS);
+  b->rank[2] = b->size;
+}
+
+static bool is_smaller(const body *a, const body *b) {
+  for (int i = 0; i < 2; i++)
+    if (a->rank[i] != b->rank[i])
+      return a->rank[i] < b->rank[i];
+  return a->rank[2] < b->rank[2];
+}
+
 static int smaller_first(const void *p, const void *q) {
   const body *a = p, *b = q;
-  if (a->size != b->size)
-    return a->size < b->size ? -1 : 1;
+  if (is_smaller(a, b) || is_smaller(b, a))
+    return is_smaller(a, b) ? -1 : 1;
   return a->component < b->component ? -1 : a->component > b->component;
 }
 
@@ -167,9 +217,11 @@ static bool order_bodies(builder *b) {
   body *sorted = allocate(b, b->count, sizeof *sorted);
   b->order = allocate(b, b->count, sizeof *b->order);
   if (sorted && b->order) {
-    for (size_t i = 0; i < b->count; i++)
+    for (size_t i = 0; i < b->count; i++) {
+      rank(&b->bodies[i]);
       if (is_solid(b, i))
         sorted[b->order_count++] = b->bodies[i];
+    }
     qsort(sorted, b->order_count, sizeof *sorted, smaller_first);
     for (size_t i = 0; i < b->order_count; i++)
       b->order[i] = sorted[i].component;
@@ -188,9 +240,20 @@ static bool list_candidates(builder *b) {
 
 /* ---- Containment ---- */
 
+typedef struct sample {
+  double point[3];
+  int axis; /**< along which its face lies least */
+} sample;
+
+static int axis_across(const builder *b, const uint32_t *corner, size_t count) {
+  vxm_vec3 area = vxm_polygon_area(b->soup->positions, corner, count, b->frame.scale);
+  double x = fabs(area.x), y = fabs(area.y), z = fabs(area.z);
+  return z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+}
+
 /** A point on a face of the component, off the lines on which edges use to lie. The same if the face is
  * reversed about its first corner: turning faces must not change what lies inside what. */
-static bool sample(const builder *b, uint32_t component, int number, double point[3]) {
+static bool take_sample(const builder *b, uint32_t component, int number, sample *out) {
   static const double weights[SAMPLES] = {0.35355339, 0.31415927, 0.33873241}; /* of the first corner */
   size_t first = b->bodies[component].first, faces = b->bodies[component + 1].first - first;
   size_t start = faces * (2 * (size_t)number + 1) / (2 * SAMPLES);
@@ -202,8 +265,9 @@ static bool sample(const builder *b, uint32_t component, int number, double poin
     const double *p = vxm_position(b->soup, corner[0]), *q = vxm_position(b->soup, corner[1]);
     const double *r = vxm_position(b->soup, corner[count - 1]);
     for (int a = 0; a < 3; a++)
-      point[a] = weights[number] * (p[a] * b->frame.scale) +
-                 (1 - weights[number]) / 2 * (q[a] * b->frame.scale + r[a] * b->frame.scale);
+      out->point[a] = weights[number] * (p[a] * b->frame.scale) +
+                      (1 - weights[number]) / 2 * (q[a] * b->frame.scale + r[a] * b->frame.scale);
+    out->axis = axis_across(b, corner, count);
     return true;
   }
   return false;
@@ -224,38 +288,77 @@ static vxm_point_in_mesh *inside_of(builder *b, uint32_t component) {
   return inside;
 }
 
-/** By the rays along z if they are all of one mind, else by half of those along all axes. */
+/** Where a sample of the inner one lies on faces of the outer one rays go wrong: then it is moved into the
+ * inner one. */
+static vxm_status clear_sample(builder *b, uint32_t outer, uint32_t inner, sample *s) {
+  if (!(b->bodies[inner].volume < SMALLER * b->bodies[outer].volume))
+    return VXM_OK;
+  bool on_face = false;
+  double height = 0;
+  vxm_status status = vxm_point_in_mesh_on_face(b->inside[outer], s->point, b->leeway, &on_face, &b->error);
+  if (status != VXM_OK || !on_face)
+    return status;
+  vxm_point_in_mesh *own = inside_of(b, inner);
+  if (!own)
+    return b->error.code;
+  status = vxm_point_in_mesh_into(own, s->point, s->axis, b->leeway, &height, &b->error);
+  s->point[s->axis] += height;
+  return status;
+}
+
+/** The samples that there are of the inner one; *count: how many. */
+static vxm_status take_samples(builder *b, uint32_t outer, uint32_t inner, sample samples[SAMPLES],
+                               int *count) {
+  *count = 0;
+  for (int s = 0; s < SAMPLES; s++) {
+    if (!take_sample(b, inner, s, &samples[*count]))
+      continue;
+    vxm_status status = clear_sample(b, outer, inner, &samples[(*count)++]);
+    if (status != VXM_OK)
+      return status;
+  }
+  return VXM_OK;
+}
+
+/** Whether the box of the inner one is the smaller one, and does not reach out of the other at all. */
+static bool fits(const body *outer, const body *inner) {
+  for (int a = 0; a < 3; a++)
+    if (inner->box[a] < outer->box[a] || inner->box[a + 3] > outer->box[a + 3])
+      return false;
+  return inner->size < outer->size;
+}
+
+/** By the rays along z if they are all of one mind, else by half of those along all axes; by all of them
+ * where boxes alone would say no. */
 static vxm_status contains(builder *b, uint32_t outer, uint32_t inner, bool *result) {
   vxm_point_in_mesh *inside = inside_of(b, outer);
   if (!inside)
     return b->error.code;
-  int rays = 0, votes = 0;
-  for (int axis = 2; axis >= 0; axis--) {
-    for (int s = 0; s < SAMPLES; s++) {
-      double point[3];
+  sample samples[SAMPLES];
+  bool all = !fits(&b->bodies[outer], &b->bodies[inner]);
+  int count, rays = 0, votes = 0;
+  vxm_status status = take_samples(b, outer, inner, samples, &count);
+  for (int axis = 2; axis >= 0 && status == VXM_OK; axis--) {
+    for (int s = 0; s < count && status == VXM_OK; s++) {
       int more;
-      if (!sample(b, inner, s, point))
-        continue;
-      vxm_status status = vxm_point_in_mesh_vote(inside, point, axis, &more, &b->error);
-      if (status != VXM_OK)
-        return status;
+      status = vxm_point_in_mesh_surrounds(inside, samples[s].point, axis, &more, &b->error);
       rays += 2;
       votes += more;
     }
-    if (votes == 0 || votes == rays)
+    if (all ? votes < rays : votes == 0 || votes == rays)
       break;
   }
   /* a missing face turns a ray that should be odd; outside, most rays cross nothing that could be missing */
-  *result = rays > 0 && 2 * votes >= rays;
-  return VXM_OK;
+  *result = rays > 0 && (all ? votes == rays : 2 * votes >= rays);
+  return status;
 }
 
 /** First place in the order whose body is larger than the given one. */
-static size_t first_larger(const builder *b, double size) {
+static size_t first_larger(const builder *b, const body *than) {
   size_t begin = 0, end = b->order_count;
   while (begin < end) {
     size_t middle = begin + (end - begin) / 2;
-    if (b->bodies[b->order[middle]].size > size)
+    if (is_smaller(than, &b->bodies[b->order[middle]]))
       end = middle;
     else
       begin = middle + 1;
@@ -274,7 +377,12 @@ static uint32_t set_of(const builder *b, uint32_t component) {
 /** @param own_set only those of the component's set come into question */
 static vxm_status find_parent(builder *b, uint32_t component, bool own_set, uint32_t *parent) {
   const body *inner = &b->bodies[component];
-  vxm_box_tree_search(&b->around, inner->box, first_larger(b, inner->size));
+  double box[6];
+  for (int a = 0; a < 3; a++) {
+    box[a] = inner->box[a] + b->leeway;
+    box[a + 3] = inner->box[a + 3] - b->leeway;
+  }
+  vxm_box_tree_search(&b->around, box, first_larger(b, inner));
   for (int tries = 0, looks = 0; tries < TRIES_MAX && looks < 16 * TRIES_MAX; looks++) {
     uint32_t place = vxm_box_tree_next(&b->around);
     if (place == VXM_NO_BOX)

@@ -26,8 +26,10 @@ typedef struct vxm_containment {
  *
  * Where soup->face_sets tells of sets, components around it that are of its own set go before others.
  *
- * A component lies inside another one if its box does and if most of a few sample points on it do, by
- * crossings of rays along the axes, so that a few missing or turned faces do no harm.
+ * A component lies inside another one if its box does and if most of a few sample points do, by crossings of
+ * rays along the axes, which are odd, or wind round the point, so that a few missing or turned faces do no
+ * harm; if its box reaches out by as little as vertices are moved apart by, all rays have to say so. The
+ * points lie on its faces, or within it where these lie on faces of the other one.
  */
 vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, const uint32_t *face_labels,
                                  size_t count, const uint8_t *solid, vxm_error *error);

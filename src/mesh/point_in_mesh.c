@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/point_in_mesh.h"
 
+#include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
 
 #include <math.h>
@@ -275,6 +276,92 @@ vxm_status vxm_point_in_mesh_winding(vxm_point_in_mesh *inside, const double poi
   vxm_status status = for_each_crossing(inside, point, axis, count_turns, &w, error);
   *above = w.above;
   *below = w.below;
+  return status;
+}
+
+typedef struct rays {
+  int odd[2], turns[2];
+} rays;
+
+static void count_both(double height, int turn, void *payload) {
+  rays *r = payload;
+  r->odd[height > 0] ^= 1;
+  r->turns[height > 0] += height > 0 ? turn : -turn;
+}
+
+vxm_status vxm_point_in_mesh_surrounds(vxm_point_in_mesh *inside, const double point[3], int axis, int *votes,
+                                       vxm_error *error) {
+  rays r = {{0}, {0}};
+  vxm_status status = for_each_crossing(inside, point, axis, count_both, &r, error);
+  bool wound = r.turns[0] != 0 && r.turns[0] == r.turns[1];
+  *votes = status != VXM_OK ? 0 : wound ? 2 : r.odd[0] + r.odd[1];
+  return status;
+}
+
+typedef struct way_in {
+  double gap, next[2]; /**< below, above */
+  bool odd[2];
+} way_in;
+
+static void note_next(double height, int turn, void *payload) {
+  way_in *w = payload;
+  int side = height > 0;
+  (void)turn;
+  if (fabs(height) <= w->gap)
+    return;
+  w->odd[side] = !w->odd[side];
+  w->next[side] = fmin(w->next[side], fabs(height));
+}
+
+vxm_status vxm_point_in_mesh_into(vxm_point_in_mesh *inside, const double point[3], int axis, double gap,
+                                  double *height, vxm_error *error) {
+  way_in w = {.gap = gap, .next = {INFINITY, INFINITY}};
+  vxm_status status = for_each_crossing(inside, point, axis, note_next, &w, error);
+  *height = status != VXM_OK || w.odd[0] == w.odd[1] ? 0 : w.odd[1] ? w.next[1] / 2 : -w.next[0] / 2;
+  return status;
+}
+
+/* ---- On a face ---- */
+
+static bool is_on_triangle(const vxm_point_in_mesh *inside, const triangle *t, const double point[3],
+                           double gap) {
+  double d[3][3];
+  for (int a = 2; a >= 0; a--) {
+    for (int c = 0; c < 3; c++)
+      d[c][a] = coordinate(inside, t->v[c], a) - point[a];
+    if (fmin(d[0][a], fmin(d[1][a], d[2][a])) > gap || fmax(d[0][a], fmax(d[1][a], d[2][a])) < -gap)
+      return false;
+  }
+  vxm_vec3 u = vxm_vec3_between(d[1], d[0], 1), v = vxm_vec3_between(d[2], d[0], 1);
+  vxm_vec3 normal = vxm_vec3_cross(u, v);
+  double height = vxm_vec3_dot(normal, (vxm_vec3){d[0][0], d[0][1], d[0][2]});
+  return fabs(height) <= gap * vxm_vec3_length(normal);
+}
+
+vxm_status vxm_point_in_mesh_on_face(vxm_point_in_mesh *inside, const double point[3], double gap,
+                                     bool *result, vxm_error *error) {
+  vxm_point_in_mesh_bins *bins = &inside->bins[2];
+  plane across = plane_across(2);
+  const int axes[2] = {across.u, across.v};
+  cell_range cells;
+  *result = false;
+  vxm_status status = bins->built ? VXM_OK : build(inside, 2, error);
+  for (int side = 0; side < 2 && status == VXM_OK; side++) {
+    double from_low = point[axes[side]] - inside->box[axes[side]];
+    cells.low[side] = cell_of(bins, side, from_low - gap);
+    cells.high[side] = cell_of(bins, side, from_low + gap);
+  }
+  for (size_t j = cells.low[1]; status == VXM_OK && j <= cells.high[1]; j++)
+    for (size_t i = cells.low[0]; i <= cells.high[0]; i++) {
+      size_t cell = j * bins->cells[0] + i;
+      for (size_t k = bins->begin[cell]; k < bins->begin[cell + 1] && status == VXM_OK; k++) {
+        status = vxm_ask_at(++inside->tests, inside->soup->context, error);
+        if (status == VXM_OK && is_on_triangle(inside, &bins->triangles[k], point, gap)) {
+          *result = true;
+          return VXM_OK;
+        }
+      }
+    }
   return status;
 }
 

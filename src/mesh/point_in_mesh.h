@@ -52,6 +52,26 @@ vxm_status vxm_point_in_mesh_vote(vxm_point_in_mesh *inside, const double point[
  */
 vxm_status vxm_point_in_mesh_winding(vxm_point_in_mesh *inside, const double point[3], int axis, double gap,
                                      int *above, int *below, vxm_error *error);
+/** As vxm_point_in_mesh_vote, and 2 where both rays tell that the faces wind round the point, though they
+ * cross an even number of them, as where a body lies in itself. */
+vxm_status vxm_point_in_mesh_surrounds(vxm_point_in_mesh *inside, const double point[3], int axis, int *votes,
+                                       vxm_error *error);
+/**
+ * Whether a point lies on a face, or no farther than `gap` from its plane in its box.
+ *
+ * @param point, gap scaled
+ */
+vxm_status vxm_point_in_mesh_on_face(vxm_point_in_mesh *inside, const double point[3], double gap,
+                                     bool *result, vxm_error *error);
+/**
+ * How far to go along an axis from a point on a face to be as deep within as one can: half of the way to the
+ * next face, on the side where as many are crossed as there are to leave.
+ *
+ * @param point, gap  scaled; faces that are nearer than the gap are passed over
+ * @param[out] height signed; 0 if neither side or both lie within
+ */
+vxm_status vxm_point_in_mesh_into(vxm_point_in_mesh *inside, const double point[3], int axis, double gap,
+                                  double *height, vxm_error *error);
 /** Frees the bins. */
 void vxm_point_in_mesh_release(vxm_point_in_mesh *inside);
 
