@@ -3,16 +3,26 @@
 #include "mesh/geometry.h"
 #include "mesh/sort.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
   ALL_PAIRS_MAX = 32, /**< odd edges at a vertex of which all pairs are compared */
   WINDOW = 4          /**< beyond, how many neighbours along each axis each one is compared with */
 };
 
+/** An odd edge. Ends are told apart by where they are, so that loops do not hang on how vertices are
+ * numbered.
+ */
+typedef struct odd_edge {
+  size_t edge;           /**< place in the edge map */
+  uint32_t first, other; /**< its ends: the vertex that comes first in space, and the other */
+} odd_edge;
+
 /**
- * Odd edge number o has the ends 2 o (at its vertex a) and 2 o + 1 (at b). Every end is joined with another
- * one at the same vertex.
+ * Odd edges stand in the order of their first, then of their other ends. Number o has the ends 2 o (at its
+ * first vertex) and 2 o + 1 (at the other). Every end is joined with another one at the same vertex.
  */
 typedef struct builder {
   const vxm_soup *soup;
@@ -20,7 +30,7 @@ typedef struct builder {
   vxm_context *context;
   vxm_error error; /**< of the last allocation that failed */
   size_t odd_count;
-  size_t *odd;       /**< place in the edge map */
+  odd_edge *odd;
   size_t *first_end; /**< per vertex: its ends are ends[first_end[v]] to ends[first_end[v + 1] - 1] */
   size_t *ends;
   size_t *partner; /**< per end */
@@ -34,8 +44,7 @@ static void *allocate(builder *b, size_t count, size_t size) {
 }
 
 static uint32_t end_vertex(const builder *b, size_t end) {
-  const vxm_edge *edge = &b->edges->edges[b->odd[end / 2]];
-  return end % 2 ? edge->b : edge->a;
+  return end % 2 ? b->odd[end / 2].other : b->odd[end / 2].first;
 }
 
 static uint32_t far_vertex(const builder *b, size_t end) {
@@ -46,20 +55,88 @@ static bool is_crossing(const builder *b, uint32_t vertex) {
   return b->first_end[vertex + 1] - b->first_end[vertex] > 2;
 }
 
+/* ---- Odd edges in an order of space ---- */
+
+/** A vertex that an odd edge has. */
+typedef struct located {
+  double at[3];
+  uint32_t vertex;
+} located;
+
+static int lower_position_first(const void *a, const void *b) {
+  const located *p = a, *q = b;
+  for (int axis = 0; axis < 3; axis++)
+    if (p->at[axis] != q->at[axis])
+      return p->at[axis] < q->at[axis] ? -1 : 1;
+  return p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
+}
+
+static int earlier_ends_first(const void *a, const void *b) {
+  const odd_edge *p = a, *q = b;
+  if (p->first != q->first)
+    return p->first < q->first ? -1 : 1;
+  return p->other < q->other ? -1 : p->other > q->other;
+}
+
+/** Lists the vertices of odd edges once each, and marks them in `rank`; returns how many there are. */
+static size_t list_vertices(const builder *b, located *list, uint32_t *rank) {
+  size_t count = 0;
+  for (size_t o = 0; o < b->odd_count; o++) {
+    const vxm_edge *edge = &b->edges->edges[b->odd[o].edge];
+    const uint32_t ends[2] = {edge->a, edge->b};
+    for (int i = 0; i < 2; i++) {
+      if (rank[ends[i]]++ > 0)
+        continue;
+      const double *p = vxm_position(b->soup, ends[i]);
+      list[count++] = (located){{p[0], p[1], p[2]}, ends[i]};
+    }
+  }
+  return count;
+}
+
+/** Sorts the odd edges, and puts first the end of each that comes first. */
+static void sort_odd(builder *b, located *list, uint32_t *rank) {
+  size_t count = list_vertices(b, list, rank);
+  qsort(list, count, sizeof *list, lower_position_first);
+  for (size_t i = 0; i < count; i++)
+    rank[list[i].vertex] = (uint32_t)i;
+  for (size_t o = 0; o < b->odd_count; o++) {
+    const vxm_edge *edge = &b->edges->edges[b->odd[o].edge];
+    uint32_t p = rank[edge->a], q = rank[edge->b];
+    b->odd[o].first = p < q ? p : q;
+    b->odd[o].other = p < q ? q : p;
+  }
+  qsort(b->odd, b->odd_count, sizeof *b->odd, earlier_ends_first);
+  for (size_t o = 0; o < b->odd_count; o++) {
+    b->odd[o].first = list[b->odd[o].first].vertex;
+    b->odd[o].other = list[b->odd[o].other].vertex;
+  }
+}
+
+static bool find_odd(builder *b) {
+  b->odd = allocate(b, b->odd_count, sizeof *b->odd);
+  located *list = b->odd ? allocate(b, 2 * b->odd_count, sizeof *list) : NULL;
+  uint32_t *rank = list ? allocate(b, b->soup->vertex_count, sizeof *rank) : NULL;
+  size_t next = 0;
+  for (size_t e = 0; rank && e < b->edges->count; e++)
+    if (vxm_edge_is_odd(&b->edges->edges[e]))
+      b->odd[next++].edge = e;
+  if (rank)
+    sort_odd(b, list, rank);
+  vxm_free(b->context, rank);
+  vxm_free(b->context, list);
+  return rank != NULL;
+}
+
 /* ---- The ends at each vertex ---- */
 
 static bool collect_ends(builder *b) {
   size_t vertices = b->soup->vertex_count;
-  b->odd = allocate(b, b->odd_count, sizeof *b->odd);
   b->first_end = allocate(b, vertices + 2, sizeof *b->first_end);
   b->ends = allocate(b, 2 * b->odd_count, sizeof *b->ends);
   b->partner = allocate(b, 2 * b->odd_count, sizeof *b->partner);
-  if (!b->odd || !b->first_end || !b->ends || !b->partner)
+  if (!b->first_end || !b->ends || !b->partner)
     return false;
-  size_t next = 0;
-  for (size_t e = 0; e < b->edges->count; e++)
-    if (vxm_edge_is_odd(&b->edges->edges[e]))
-      b->odd[next++] = e;
   /* Counted two places on, the sums are the begins, and listing moves each to the next one's begin. */
   for (size_t end = 0; end < 2 * b->odd_count; end++)
     b->first_end[end_vertex(b, end) + 2]++;
@@ -154,7 +231,8 @@ static void join(builder *b, size_t p, size_t q) {
 /** Two ends that could be joined, and how well they go together. */
 typedef struct candidate {
   int faults;
-  double cosine; /**< of the angle between the edges */
+  double cosine; /**< of the angle between the edges, in steps of NEAR_ANGLE */
+  double rest;   /**< the same of the two other edges, of four */
   uint32_t p, q; /**< places among the ends of the vertex, p < q */
 } candidate;
 
@@ -165,6 +243,11 @@ enum { TURNS = 1, OWN_FAN = 2 };
 /** Edges whose angle has a greater cosine lie along each other, as at a slit between panels. These go
  * together though each was wound its own way. */
 static const double ALONG = 0.999;
+
+/** Angles whose cosines differ by less are as good as equal, so that rounding does not decide. Then, of four
+ * edges, those are joined that leave the straightest way to the others: where a wall stands across the rim of
+ * an open box, that rim goes on past it, and the wall's own goes round the wall. */
+static const double NEAR_ANGLE = 1.0 / 4096;
 
 typedef struct keyed {
   double key;
@@ -187,6 +270,8 @@ static int better_first(const void *a, const void *b) {
     return p->faults < q->faults ? -1 : 1;
   if (p->cosine != q->cosine)
     return p->cosine > q->cosine ? -1 : 1;
+  if (p->rest != q->rest)
+    return p->rest < q->rest ? -1 : 1;
   if (p->p != q->p)
     return p->p < q->p ? -1 : 1;
   return p->q < q->q ? -1 : p->q > q->q;
@@ -206,8 +291,8 @@ static vxm_vec3 direction_of(const builder *b, size_t end) {
 
 /** Whether most faces of an edge run along it away from the vertex of this end. */
 static bool leaves(const builder *b, size_t end) {
-  const vxm_edge *edge = &b->edges->edges[b->odd[end / 2]];
-  return (2 * edge->forward > edge->count) == (end % 2 == 0);
+  const vxm_edge *edge = &b->edges->edges[b->odd[end / 2].edge];
+  return (2 * edge->forward > edge->count) == (end_vertex(b, end) == edge->a);
 }
 
 static void add_candidate(const builder *b, joining *j, uint32_t p, uint32_t q) {
@@ -217,13 +302,16 @@ static void add_candidate(const builder *b, joining *j, uint32_t p, uint32_t q) 
     cosine = cosine > 1 ? 1 : -1;
   bool turns = cosine < ALONG && leaves(b, j->ends[p]) == leaves(b, j->ends[q]);
   int faults = (turns ? TURNS : 0) + (j->fans[p] == j->fans[q] ? OWN_FAN : 0);
-  j->candidates[j->candidate_count++] = (candidate){faults, cosine, p < q ? p : q, p < q ? q : p};
+  j->candidates[j->candidate_count++] = (candidate){
+      .faults = faults, .cosine = rint(cosine / NEAR_ANGLE), .p = p < q ? p : q, .q = p < q ? q : p};
 }
 
 static void add_all_candidates(const builder *b, joining *j) {
   for (uint32_t p = 0; p < j->count; p++)
     for (uint32_t q = p + 1; q < j->count; q++)
       add_candidate(b, j, p, q);
+  for (size_t c = 0; j->count == 4 && c < j->candidate_count; c++) /* opposite pairs stand mirrored */
+    j->candidates[c].rest = j->candidates[j->candidate_count - 1 - c].cosine;
 }
 
 /** Those that follow closely on each other along an axis: near directions are near along all of them. */
@@ -252,12 +340,23 @@ static void join_rest(builder *b, joining *j) {
     join(b, j->ends[j->sorted[i].place], j->ends[j->sorted[i + rest / 2].place]);
 }
 
+/** Numbers the fans by the first end that each has. */
+static void number_fans(const builder *b, joining *j) {
+  for (uint32_t p = 0; p < j->count; p++) {
+    j->fans[p] = fan_of(b, find_side(b, end_vertex(b, j->ends[p]), far_vertex(b, j->ends[p])));
+    j->sorted[p] = (keyed){(double)j->fans[p], p};
+  }
+  qsort(j->sorted, j->count, sizeof *j->sorted, lower_key_first);
+  for (size_t i = 0, first = 0; i < j->count; i++) {
+    first = j->sorted[i].key == j->sorted[first].key ? first : i;
+    j->fans[j->sorted[i].place] = j->sorted[first].place;
+  }
+}
+
 static void join_best(builder *b, joining *j) {
   j->candidate_count = 0;
-  for (size_t p = 0; p < j->count; p++) {
-    j->fans[p] = fan_of(b, find_side(b, end_vertex(b, j->ends[p]), far_vertex(b, j->ends[p])));
-    j->joined[p] = 0;
-  }
+  memset(j->joined, 0, j->count * sizeof *j->joined);
+  number_fans(b, j);
   if (j->count <= ALL_PAIRS_MAX)
     add_all_candidates(b, j);
   else
@@ -332,7 +431,7 @@ static bool walk(builder *b, vxm_boundary_loops *loops) {
       continue;
     for (size_t end = 2 * o; !seen[end / 2]; end = b->partner[end ^ 1]) {
       seen[end / 2] = 1;
-      loops->edge[step] = b->odd[end / 2];
+      loops->edge[step] = b->odd[end / 2].edge;
       loops->vertex[step++] = end_vertex(b, end);
     }
     loops->begin[++loops->count] = step;
@@ -349,7 +448,7 @@ vxm_status vxm_boundary_loops_build(vxm_boundary_loops *out, const vxm_soup *sou
                .context = soup->context,
                .error = VXM_ERROR_INIT,
                .odd_count = edges->odd};
-  bool done = collect_ends(&b) && join_ends(&b) && walk(&b, out);
+  bool done = find_odd(&b) && collect_ends(&b) && join_ends(&b) && walk(&b, out);
   vxm_free(b.context, b.fan);
   vxm_free(b.context, b.sides);
   vxm_free(b.context, b.partner);

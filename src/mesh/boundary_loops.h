@@ -20,7 +20,10 @@ extern "C" {
  * smallest angle first. So the slits along T-junctions become loops of their own, and panels that share
  * corners are not taken for holes. But edges that do not lie along each other are joined only if the faces
  * run along both one way, as they do around the hole that a face has left, where there are such: then what
- * closes the loop can be wound as the faces are.
+ * closes the loop can be wound as the faces are. Of four edges that meet at equal angles those are joined
+ * that leave the straightest way to the two others. What is still equal is decided by where vertices lie, and
+ * so are the order of loops and where each begins: nothing hangs on how vertices and faces are numbered, but
+ * where several lie at one place.
  */
 typedef struct vxm_boundary_loops {
   vxm_context *context;
@@ -37,8 +40,8 @@ typedef struct vxm_boundary_loops {
  * @param edges    of the same soup, without a vertex map
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  *
- * Linear time, but for sorting the edges at vertices with more than two odd ones. At a vertex with more than
- * 32 of them only those that are near in direction are compared.
+ * Linear time, but for sorting the odd edges, and those at vertices with more than two odd ones. At a vertex
+ * with more than 32 of them only those that are near in direction are compared.
  */
 vxm_status vxm_boundary_loops_build(vxm_boundary_loops *out, const vxm_soup *soup, const vxm_edges *edges,
                                     vxm_error *error);

@@ -310,6 +310,132 @@ static void test_same_bits_for_any_number_of_threads(void **state) {
       assert_true(hash[t][m] == hash[0][m]);
 }
 
+/* ---- However vertices and faces are numbered ---- */
+
+static void permute(size_t *order, size_t count, vxm_rng *rng) {
+  for (size_t i = 0; i < count; i++) {
+    size_t j = (size_t)vxm_rng_below(rng, i + 1);
+    order[i] = order[j];
+    order[j] = i;
+  }
+}
+
+/** The same mesh: vertices numbered otherwise, faces in another order, each from another corner on. */
+static vxm_soup *shuffled(const vxm_soup *soup, vxm_rng *rng) {
+  vxm_soup *out = shape_empty(context);
+  size_t *vertex = calloc(soup->vertex_count + 1, sizeof *vertex),
+         *face = calloc(soup->face_count + 1, sizeof *face);
+  uint32_t *number = calloc(soup->vertex_count + 1, sizeof *number);
+  assert_true(vertex && face && number);
+  permute(vertex, soup->vertex_count, rng);
+  permute(face, soup->face_count, rng);
+  for (size_t v = 0; v < soup->vertex_count; v++) {
+    const double *p = vxm_position(soup, vertex[v]);
+    shape_vertex(out, p[0], p[1], p[2]);
+    number[vertex[v]] = (uint32_t)v;
+  }
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t n;
+    uint32_t corners[8];
+    const uint32_t *corner = vxm_face(soup, face[f], &n);
+    assert_true(n <= 8);
+    size_t first = (size_t)vxm_rng_below(rng, n);
+    for (size_t c = 0; c < n; c++)
+      corners[c] = number[corner[(first + c) % n]];
+    shape_face(out, corners, n);
+  }
+  free(vertex);
+  free(face);
+  free(number);
+  return out;
+}
+
+/** The surface of a box of n by n squares a side, without those that chance takes: most of its vertices have
+ * more than one hole, and angles at them are equal; lengths are not, as rounding decides in the middle of
+ * what is symmetric. */
+static vxm_soup *sieve(int n, double removed, vxm_rng *rng) {
+  vxm_soup *soup = shape_empty(context);
+  uint32_t number[10][10][10];
+  for (int x = 0; x <= n; x++)
+    for (int y = 0; y <= n; y++)
+      for (int z = 0; z <= n; z++) {
+        number[x][y][z] = (uint32_t)soup->vertex_count;
+        shape_vertex(soup, 1.9 * x / n - 1.1 + 0.011 * x * x / n, 1.7 * y / n - 0.9 + 0.017 * y * y / n,
+                     2.1 * z / n - 1.13 + 0.007 * z * z / n);
+      }
+  for (int side = 0; side < 6; side++)
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++) {
+        uint32_t corner[4];
+        for (int c = 0; c < 4; c++) {
+          int k = side % 2 ? c : 3 - c, at[3];
+          at[side / 2] = side % 2 ? n : 0;
+          at[(side / 2 + 1) % 3] = i + (k == 1 || k == 2);
+          at[(side / 2 + 2) % 3] = j + (k >= 2);
+          corner[c] = number[at[0]][at[1]][at[2]];
+        }
+        if (vxm_rng_unit(rng) >= removed)
+          shape_face(soup, corner, 4);
+      }
+  return soup;
+}
+
+/** A box without a bottom, with a wall across, as the steps before a bath make it. Every edge at the wall has
+ * three faces, and at its lower corners four rims meet at right angles. */
+static vxm_soup *walled_box(double wall, double height) {
+  static const uint8_t quads[9][4] = {{0, 1, 3, 2},   {4, 6, 7, 5}, {8, 10, 11, 9},
+                                      {0, 4, 5, 1},   {4, 8, 9, 5}, {2, 3, 7, 6},
+                                      {6, 7, 11, 10}, {1, 5, 7, 3}, {5, 9, 11, 7}};
+  vxm_soup *soup = shape_empty(context);
+  const double x[3] = {-1.1, wall, 1};
+  for (int v = 0; v < 12; v++) /* the lowest bit is y, the next one z */
+    shape_vertex(soup, x[v / 4], v & 1 ? height : -1.3, v & 2 ? 1.2 : -1.17);
+  for (int q = 0; q < 9; q++)
+    shape_face(soup, (uint32_t[]){quads[q][0], quads[q][1], quads[q][2], quads[q][3]}, 4);
+  return soup;
+}
+
+static void expect_the_same_shuffled(const vxm_soup *soup, const vxm_grid *expected, vxm_rng *rng) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  for (int s = 0; s < 6; s++) {
+    vxm_soup *other = shuffled(soup, rng);
+    vxm_grid *grid = voxelize(other, options, NULL);
+    assert_true(iou(expected, grid) == 1);
+    vxm_grid_destroy(grid);
+    vxm_soup_destroy(other);
+  }
+}
+
+/** The whole rim is closed, and the wall is none. */
+static void test_a_wall_across_an_open_box(void **state) {
+  (void)state;
+  vxm_rng rng = {12};
+  for (int round = 0; round < 12; round++) {
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    double height = 0.1 + 0.2 * (round / 4), low[3] = {-1.1, -1.3, -1.17}, high[3] = {1, height, 1.2};
+    vxm_soup *box = shape_empty(context), *walled = walled_box(-0.31 + 0.2 * (round % 4), height);
+    shape_box(box, low, high);
+    vxm_grid *expected = voxelize(box, options, NULL);
+    expect_the_same_shuffled(walled, expected, &rng);
+    vxm_grid_destroy(expected);
+    vxm_soup_destroy(walled);
+    vxm_soup_destroy(box);
+  }
+}
+
+static void test_numbers_decide_nothing(void **state) {
+  (void)state;
+  vxm_rng rng = {11};
+  for (int round = 0; round < 30; round++) {
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    vxm_soup *soup = sieve(3 + round % 6, 0.1 + 0.1 * (round % 4), &rng);
+    vxm_grid *expected = voxelize(soup, options, NULL);
+    expect_the_same_shuffled(soup, expected, &rng);
+    vxm_grid_destroy(expected);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /* ---- Confidence ---- */
 
 static void test_confidence(void **state) {
@@ -352,6 +478,8 @@ int main(void) {
       cmocka_unit_test(test_winding_method_equals_parity_on_closed_meshes),
       cmocka_unit_test(test_patches_are_turned_outward),
       cmocka_unit_test(test_same_bits_for_any_number_of_threads),
+      cmocka_unit_test(test_a_wall_across_an_open_box),
+      cmocka_unit_test(test_numbers_decide_nothing),
       cmocka_unit_test(test_confidence),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
