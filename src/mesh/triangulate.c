@@ -200,7 +200,7 @@ static void take_out(vxm_ring *r, uint32_t i) {
 static void enqueue(vxm_ring *r, uint32_t i) {
   const double *a = r->tri->plane[r->tri->before[i]], *b = r->tri->plane[i],
                *c = r->tri->plane[r->tri->after[i]];
-  int turn = vxm_orient2d(a, b, c);
+  int turn = r->is_convex ? 1 : vxm_orient2d(a, b, c);
   take_out(r, i);
   if (turn < 0 || (turn == 0 && !r->may_touch))
     return;
@@ -247,7 +247,7 @@ static void cut(vxm_ring *r, uint32_t i) {
 static void clip(vxm_ring *r, uint32_t i) {
   uint32_t a = r->tri->before[i], c = r->tri->after[i];
   cut(r, i);
-  while (r->remaining > 3) {
+  while (r->remaining > 3 && !r->is_convex) {
     if (is_spike(r, a)) {
       i = a;
       a = r->tri->before[a];
@@ -346,7 +346,7 @@ static void cover_rest(vxm_ring *r, uint32_t first) {
 /** Spikes; ears that nothing touches; then others, and corners in line; then, if a polygon that crosses
  * itself has no more, what does the least harm, and so on; and whatever covers the rest. */
 static void clip_all(vxm_ring *r) {
-  for (size_t i = 0; i < r->n && r->remaining > 3; i++)
+  for (size_t i = 0; i < r->n && r->remaining > 3 && !r->is_convex; i++)
     if (r->tri->after[i] != VXM_RING_CLIPPED && is_spike(r, (uint32_t)i))
       clip(r, (uint32_t)i);
   uint32_t left = first_left(r, 0);
