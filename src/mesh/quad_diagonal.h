@@ -56,13 +56,15 @@ static inline void vxm_quad_sides(int inside[2], const double *const at[4], size
   inside[1] = vxm_orient2d(plane[3], plane[0], plane[1]) * vxm_orient2d(plane[1], plane[2], plane[3]);
 }
 
-/** The corner with the diagonal: 0 (as well as 2), or 1 (as well as 3). */
-static inline size_t vxm_quad_diagonal(const double *const at[4]) {
-  double most = 0, area[3], first[3], second[3];
+/** vxm_quad_diagonal, whatever the positions are. */
+static inline size_t vxm_quad_diagonal_exact(const double *const at[4]) {
+  double most = 0, sum = 0, area[3], first[3], second[3];
   for (int k = 0; k < 4; k++)
-    for (int a = 0; a < 3; a++)
-      most = fabs(at[k][a]) <= most ? most : fabs(at[k][a]); /* or no number */
-  double scale = vxm_scale_near_one(most);
+    for (int a = 0; a < 3; a++) {
+      most = fabs(at[k][a]) > most ? fabs(at[k][a]) : most;
+      sum += at[k][a] - at[k][a]; /* 0, or no number */
+    }
+  double scale = sum == 0 ? vxm_scale_near_one(most) : 0;
   for (int a = 0; a < 3; a++) {
     first[a] = at[2][a] * scale - at[0][a] * scale;
     second[a] = at[3][a] * scale - at[1][a] * scale;
@@ -92,6 +94,41 @@ static inline size_t vxm_quad_diagonal(const double *const at[4]) {
   for (size_t k = 1; k < 4; k++)
     before = vxm_lies_before(at[k], at[before]) ? k : before;
   return before % 2;
+}
+
+/** The corner with the diagonal: 0 (as well as 2), or 1 (as well as 3). */
+static inline size_t vxm_quad_diagonal(const double *const at[4]) {
+  const double bound = 3.3306690738754716e-16; /* see vxm_orient2d */
+  const double *p = at[0], *q = at[1], *r = at[2], *s = at[3];
+  double length[2] = {vxm_squared_length(r, p, 1), vxm_squared_length(s, q, 1)};
+  double first[3], second[3], area[3];
+  for (int a = 0; a < 3; a++) {
+    first[a] = r[a] - p[a];
+    second[a] = s[a] - q[a];
+  }
+  area[0] = fabs(first[1] * second[2] - first[2] * second[1]);
+  area[1] = fabs(first[2] * second[0] - first[0] * second[2]);
+  area[2] = fabs(first[0] * second[1] - first[1] * second[0]);
+  size_t axis = area[1] > area[0];
+  axis = area[2] > area[axis] ? 2 : axis;
+  size_t u = axis < 2 ? axis + 1 : 0, v = axis > 0 ? axis - 1 : 2;
+  const double low = 0x1p-200, high = 0x1p200; /* no product overflows or vanishes */
+  bool sure = (length[0] > low) & (length[0] < high) & (length[1] > low) & (length[1] < high) &
+              (length[0] != length[1]) & (area[u] != area[axis]) & (area[v] != area[axis]);
+  const double edge[4][2] = {{q[u] - p[u], q[v] - p[v]},
+                             {r[u] - q[u], r[v] - q[v]},
+                             {s[u] - r[u], s[v] - r[v]},
+                             {p[u] - s[u], p[v] - s[v]}};
+  double turn[4]; /* behind each edge */
+  for (int k = 0; k < 4; k++) {
+    double left = edge[k][0] * edge[(k + 1) % 4][1], right = edge[k][1] * edge[(k + 1) % 4][0];
+    turn[k] = left - right;
+    sure &= fabs(turn[k]) > bound * (fabs(left) + fabs(right)) + 0x1p-900;
+  }
+  bool inside[2] = {(turn[0] > 0) == (turn[2] > 0), (turn[1] > 0) == (turn[3] > 0)};
+  if (!sure)
+    return vxm_quad_diagonal_exact(at);
+  return inside[0] != inside[1] ? inside[1] : length[1] < length[0];
 }
 
 #endif

@@ -88,7 +88,13 @@ static inline void add_face(builder *b, uint32_t part, uint32_t p, uint32_t q, u
     add(b, part, p, q, r);
 }
 
-static void cut_quad(builder *b, uint32_t part, const uint32_t corner[4]) {
+static inline void cut_quad(builder *b, uint32_t part, const uint32_t corner[4]) {
+  uint32_t v = corner[0], w = corner[1], x = corner[2], y = corner[3];
+  bool differ = has_three_corners(v, w, x) && has_three_corners(x, y, v) && w != y;
+  if (differ && !b->triangles->corners) { /* two, whichever they are */
+    b->next[part] += 2;
+    return;
+  }
   const double *at[4];
   for (int k = 0; k < 4; k++)
     at[k] = vxm_position(b->soup, corner[k]);
