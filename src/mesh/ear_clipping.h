@@ -12,7 +12,10 @@
 typedef struct vxm_ring {
   vxm_triangulator *tri;
   const uint32_t *corners;
+  const double *positions;
+  double scale; /**< of these, see vxm_scale_near_one */
   size_t n, remaining;
+  bool is_convex;       /**< all ears are free */
   size_t waiting;       /**< corners in the heap */
   size_t leaves;        /**< of the tree, a power of two; 0 = there is none */
   size_t looks;         /**< at corners and boxes so far */

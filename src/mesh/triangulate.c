@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/ear_clipping.h"
 #include "mesh/orient2d.h"
+#include "mesh/quad_diagonal.h"
 
 #include <math.h>
 #include <string.h>
@@ -62,8 +63,7 @@ static vxm_status reserve(vxm_triangulator *tri, size_t n, vxm_error *error) {
 
 /* ---- The plane ---- */
 
-/** A power of two that brings coordinates near 1, so that products neither overflow nor vanish; 0 if one is
- * not finite. */
+/** See vxm_scale_near_one. */
 static double scale_of(const double *positions, const uint32_t *corners, size_t n) {
   double most = 0;
   for (size_t i = 0; i < n; i++)
@@ -73,10 +73,7 @@ static double scale_of(const double *positions, const uint32_t *corners, size_t 
         return 0;
       most = x > most ? x : most;
     }
-  if ((most < 0x1p100 && most > 0x1p-100) || most == 0)
-    return 1;
-  int exponent = -ilogb(most);
-  return ldexp(1, exponent < 1023 ? exponent : 1023);
+  return vxm_scale_near_one(most);
 }
 
 /** The axis on which the vector area (Newell's sum) is largest; where that is nothing but rounding, as in
@@ -120,11 +117,9 @@ static bool turns_right(const double (*plane)[2], size_t n) {
   return sum + rest < 0;
 }
 
-/** Leaves one coordinate out, so that the polygon turns left. False if a coordinate is not finite. */
-static bool project(vxm_triangulator *tri, const double *positions, const uint32_t *corners, size_t n) {
-  double scale = scale_of(positions, corners, n);
-  if (scale == 0)
-    return false;
+/** Leaves one coordinate out, so that the polygon turns left. */
+static void project(vxm_triangulator *tri, const double *positions, const uint32_t *corners, size_t n,
+                    double scale) {
   size_t axis = widest_axis(positions, corners, n, scale), u = (axis + 1) % 3, v = (axis + 2) % 3;
   for (size_t i = 0; i < n; i++) {
     const double *p = positions + 3 * (size_t)corners[i];
@@ -132,13 +127,12 @@ static bool project(vxm_triangulator *tri, const double *positions, const uint32
     tri->plane[i][1] = p[v] * scale;
   }
   if (!turns_right((const double(*)[2])tri->plane, n))
-    return true;
+    return;
   for (size_t i = 0; i < n; i++) {
     double kept = tri->plane[i][0];
     tri->plane[i][0] = tri->plane[i][1];
     tri->plane[i][1] = kept;
   }
-  return true;
 }
 
 static bool is_convex(const double (*plane)[2], size_t n) {
@@ -160,18 +154,28 @@ static void set_place(const vxm_ring *r, size_t place, uint32_t i) {
   r->tri->waits[i] = (uint32_t)place;
 }
 
+static inline const double *position_of(const vxm_ring *r, uint32_t i) {
+  return r->positions + 3 * (size_t)r->corners[i];
+}
+
+/** Whether a corner is tried before another one: where it takes a shorter cut; of equal ones it is told by
+ * where they lie, so that equal polygons become the same triangles, whichever corner they begin with. */
+static bool goes_first(const vxm_ring *r, uint32_t i, uint32_t j) {
+  double cut = r->tri->cuts[i], other = r->tri->cuts[j];
+  return cut != other ? cut < other : vxm_lies_before(position_of(r, i), position_of(r, j));
+}
+
 static void sift(const vxm_ring *r, size_t place) {
   const vxm_triangulator *tri = r->tri;
   uint32_t i = tri->heap[place];
-  double cut = tri->cuts[i];
-  for (; place > 0 && tri->cuts[tri->heap[(place - 1) / 2]] > cut; place = (place - 1) / 2)
+  for (; place > 0 && goes_first(r, i, tri->heap[(place - 1) / 2]); place = (place - 1) / 2)
     set_place(r, place, tri->heap[(place - 1) / 2]);
   for (;;) {
     size_t child = 2 * place + 1;
     if (child >= r->waiting)
       break;
-    child += child + 1 < r->waiting && tri->cuts[tri->heap[child + 1]] < tri->cuts[tri->heap[child]];
-    if (!(tri->cuts[tri->heap[child]] < cut))
+    child += child + 1 < r->waiting && goes_first(r, tri->heap[child + 1], tri->heap[child]);
+    if (!goes_first(r, tri->heap[child], i))
       break;
     set_place(r, place, tri->heap[child]);
     place = child;
@@ -196,12 +200,13 @@ static void take_out(vxm_ring *r, uint32_t i) {
 static void enqueue(vxm_ring *r, uint32_t i) {
   const double *a = r->tri->plane[r->tri->before[i]], *b = r->tri->plane[i],
                *c = r->tri->plane[r->tri->after[i]];
-  int turn = vxm_orient2d(a, b, c);
+  int turn = r->is_convex ? 1 : vxm_orient2d(a, b, c);
   take_out(r, i);
   if (turn < 0 || (turn == 0 && !r->may_touch))
     return;
-  double x = c[0] - a[0], y = c[1] - a[1];
-  r->tri->cuts[i] = turn > 0 ? x * x + y * y : (double)INFINITY;
+  r->tri->cuts[i] = turn > 0 ? vxm_squared_length(position_of(r, r->tri->before[i]),
+                                                  position_of(r, r->tri->after[i]), r->scale)
+                             : (double)INFINITY;
   set_place(r, r->waiting++, i);
   sift(r, r->waiting - 1);
 }
@@ -242,7 +247,7 @@ static void cut(vxm_ring *r, uint32_t i) {
 static void clip(vxm_ring *r, uint32_t i) {
   uint32_t a = r->tri->before[i], c = r->tri->after[i];
   cut(r, i);
-  while (r->remaining > 3) {
+  while (r->remaining > 3 && !r->is_convex) {
     if (is_spike(r, a)) {
       i = a;
       a = r->tri->before[a];
@@ -266,7 +271,7 @@ static void clip_ears(vxm_ring *r) {
     uint32_t i = r->tri->heap[0];
     vxm_ear e = vxm_ear_at(r, i);
     take_out(r, i);
-    if (r->tri->cuts[i] == (double)INFINITY || vxm_ear_is_free(r, &e))
+    if (r->is_convex || r->tri->cuts[i] == (double)INFINITY || vxm_ear_is_free(r, &e))
       clip(r, i);
   }
 }
@@ -286,17 +291,20 @@ static uint32_t first_left(const vxm_ring *r, uint32_t i) {
   return i;
 }
 
-/** The corner that turns left over the least area, where a polygon that crosses itself suffers least; else
- * `start`. */
+/** The corner that turns left over the least area, where a polygon that crosses itself suffers least; if none
+ * does, the one that turns right over the least. */
 static uint32_t least_corner(vxm_ring *r, uint32_t start) {
   double least = INFINITY;
   uint32_t found = start, i = start;
+  bool turns_left = false;
   do {
     vxm_ear e = vxm_ear_at(r, i);
-    double area = (e.at[1][0] - e.at[0][0]) * (e.at[2][1] - e.at[0][1]) -
-                  (e.at[1][1] - e.at[0][1]) * (e.at[2][0] - e.at[0][0]);
-    if (area > 0 && area < least) {
-      least = area;
+    double area = (e.at[1][0] - e.at[0][0]) * (e.at[2][1] - e.at[1][1]) -
+                  (e.at[1][1] - e.at[0][1]) * (e.at[2][0] - e.at[1][0]);
+    bool left = area > 0;
+    if (left > turns_left || (left == turns_left && fabs(area) < least)) {
+      turns_left = left;
+      least = fabs(area);
       found = i;
     }
     r->looks++;
@@ -314,10 +322,31 @@ static void clip_crossed(vxm_ring *r, uint32_t start) {
   clip(r, least_corner(r, start));
 }
 
+/** Covers what lies between corners first..last of a list and the line from the last to the first: a triangle
+ * over the corner in the middle, and what its two sides leave. So most are as small as edges are short. */
+static void halve(vxm_ring *r, const uint32_t *left, size_t first, size_t last) {
+  size_t middle = first + (last - first) / 2;
+  if (middle == first)
+    return;
+  halve(r, left, first, middle);
+  put(r, left[first], left[middle], left[last]);
+  halve(r, left, middle, last);
+}
+
+/** Triangles of all corners left. */
+static void cover_rest(vxm_ring *r, uint32_t first) {
+  uint32_t *left = r->tri->heap, i = first; /* nothing waits any more */
+  size_t count = 0;
+  do
+    left[count++] = i;
+  while ((i = r->tri->after[i]) != first);
+  halve(r, left, 0, count - 1);
+}
+
 /** Spikes; ears that nothing touches; then others, and corners in line; then, if a polygon that crosses
- * itself has no more, what does the least harm, and so on; and a fan of the rest. */
+ * itself has no more, what does the least harm, and so on; and whatever covers the rest. */
 static void clip_all(vxm_ring *r) {
-  for (size_t i = 0; i < r->n && r->remaining > 3; i++)
+  for (size_t i = 0; i < r->n && r->remaining > 3 && !r->is_convex; i++)
     if (r->tri->after[i] != VXM_RING_CLIPPED && is_spike(r, (uint32_t)i))
       clip(r, (uint32_t)i);
   uint32_t left = first_left(r, 0);
@@ -332,15 +361,22 @@ static void clip_all(vxm_ring *r) {
     if (r->remaining > 3)
       clip_crossed(r, left);
   }
-  left = first_left(r, left);
-  for (uint32_t b = r->tri->after[left], c = r->tri->after[b]; c != left; b = c, c = r->tri->after[c])
-    put(r, left, b, c);
+  cover_rest(r, first_left(r, left));
 }
 
-static void fan(vxm_triangulator *tri, const uint32_t *corners, size_t n) {
-  for (size_t i = 0; i + 2 < n; i++)
-    memcpy(tri->triangles + 3 * i, (uint32_t[]){corners[0], corners[i + 1], corners[i + 2]},
+/** Triangles from one corner to all edges. */
+static void fan(vxm_triangulator *tri, const uint32_t *corners, size_t n, size_t apex) {
+  for (size_t i = 1; i + 1 < n; i++)
+    memcpy(tri->triangles + 3 * (i - 1),
+           (uint32_t[]){corners[apex], corners[(apex + i) % n], corners[(apex + i + 1) % n]},
            3 * sizeof *corners);
+}
+
+static size_t quad_diagonal(const double *positions, const uint32_t *corners) {
+  const double *at[4];
+  for (int k = 0; k < 4; k++)
+    at[k] = positions + 3 * (size_t)corners[k];
+  return vxm_quad_diagonal(at);
 }
 
 vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const uint32_t *corners, size_t n,
@@ -349,14 +385,19 @@ vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const
   if (status != VXM_OK)
     return status;
   *triangles = tri->triangles;
-  if (n == 3 || !project(tri, positions, corners, n) || is_convex((const double(*)[2])tri->plane, n)) {
-    fan(tri, corners, n);
+  double scale = n > 4 ? scale_of(positions, corners, n) : 0;
+  if (scale == 0) {
+    fan(tri, corners, n, n == 4 ? quad_diagonal(positions, corners) : 0);
     return VXM_OK;
   }
+  project(tri, positions, corners, n, scale);
   vxm_ring r = {.tri = tri,
                 .corners = corners,
+                .positions = positions,
+                .scale = scale,
                 .n = n,
                 .remaining = n,
+                .is_convex = is_convex((const double(*)[2])tri->plane, n),
                 .looks_max = SIZE_MAX,
                 .triangle = tri->triangles};
   memset(tri->waits, 0xff, n * sizeof *tri->waits);
@@ -364,7 +405,7 @@ vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const
     tri->before[i] = (uint32_t)(i > 0 ? i - 1 : n - 1);
     tri->after[i] = (uint32_t)(i + 1 < n ? i + 1 : 0);
   }
-  if (n > ALONE)
+  if (n > ALONE && !r.is_convex)
     vxm_ring_make_tree(&r);
   clip_all(&r);
   tri->looks += r.looks;

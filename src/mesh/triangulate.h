@@ -31,8 +31,12 @@ void vxm_triangulator_open(vxm_triangulator *tri, vxm_context *context);
 void vxm_triangulator_close(vxm_triangulator *tri);
 
 /**
- * Splits a polygon of n >= 3 corners into n - 2 triangles by clipping ears, seen along the axis on which its
- * vector area is largest; no decision is a matter of rounding.
+ * Splits a polygon of n >= 3 corners into n - 2 triangles: one rule for all that needs triangles. One of four
+ * corners is cut along a diagonal (mesh/quad_diagonal.h), a larger one by clipping ears, those with the
+ * shortest cuts first, seen along the axis on which its vector area is largest; what lies inside is not a
+ * matter of rounding. The triangles depend neither on the corner that it begins with nor on the way it is
+ * wound; those of a polygon that is turned by right angles or mirrored are turned or mirrored, but where cuts
+ * are equally long.
  *
  * A polygon that does not cross itself there is covered once and nothing else is. It may touch itself: holes
  * joined to the rim by an edge there and back, corners on edges, spikes, corners in line. The triangles of
@@ -41,7 +45,7 @@ void vxm_triangulator_close(vxm_triangulator *tri);
  *
  * A polygon of m corners takes some m log m steps; needles side by side with a long row of corners may take
  * m^2 / 64. Those that cross themselves share a budget of work from where that is found; when it is used up
- * what is left of them becomes a fan.
+ * what is left of them is halved again and again.
  *
  * @param[out] triangles 3 (n - 2) vertex numbers, valid until the next call
  */

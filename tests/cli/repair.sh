@@ -27,6 +27,22 @@ run 'voxmend repair in/rocket.off -o once.off'
 run 'voxmend repair once.off -o twice.off'
 run 'cmp once.off twice.off'
 
+say "# polygons that are bent"
+# a ring of quads, whose positions floats hold: the triangles that are written have the same voxels
+awk 'BEGIN {
+  for (r = 0; r < 14; r++)
+    for (s = 0; s < 8; s++) {
+      across = 10 + 4 * cos(s * 0.785398) + (r * 7 + s * 5) % 11 / 4
+      printf "v %.6f %.6f %.6f\n", int(64 * across * cos(r * 0.448799)) / 64, int(64 * across * sin(r * 0.448799)) / 64,
+        int(256 * sin(s * 0.785398)) / 64 + (r * 3 + s * 7) % 13 / 8
+    }
+  for (r = 0; r < 14; r++)
+    for (s = 0; s < 8; s++)
+      print "f", r * 8 + s + 1, (r + 1) % 14 * 8 + s + 1, (r + 1) % 14 * 8 + (s + 1) % 8 + 1, r * 8 + (s + 1) % 8 + 1
+}' >bent.obj
+run 'voxmend voxelize bent.obj -o bent.npy -q -r 40 && voxmend repair bent.obj -o bent.stl -q &&
+  voxmend voxelize bent.stl -o again.npy -q -r 40 && cmp bent.npy again.npy && voxmend info bent.stl'
+
 say "# small components"
 run 'voxmend repair in/overlapping.off -o all.off -q --polygons keep && voxmend repair all.off -o one.off --drop-parts faces:7 --polygons keep'
 run 'voxmend repair in/rocket.off -o large.off -q --drop-parts faces:50 && voxmend info large.off'

@@ -349,6 +349,124 @@ static void test_large_crossings(void **state) {
   free(positions);
 }
 
+/* ---- One way to cut, however a polygon lies ---- */
+
+/** The triangles, each with its vertices in order, and all in order. */
+static int compare_vertices(const void *a, const void *b) {
+  uint32_t p = *(const uint32_t *)a, q = *(const uint32_t *)b;
+  return (p > q) - (p < q);
+}
+
+static int compare_triangles(const void *a, const void *b) {
+  return memcmp(a, b, 3 * sizeof(uint32_t));
+}
+
+enum { BENT_MOST = 12 };
+
+static void triangles_of(uint32_t out[BENT_MOST][3], vxm_triangulator *tri, const double *positions,
+                         const uint32_t *corners, size_t n) {
+  const uint32_t *triangles;
+  assert_int_equal(vxm_triangulate(tri, positions, corners, n, &triangles, NULL), VXM_OK);
+  memcpy(out, triangles, (n - 2) * sizeof *out);
+  for (size_t t = 0; t + 2 < n; t++)
+    qsort(out[t], 3, sizeof *out[t], compare_vertices);
+  qsort(out, n - 2, sizeof *out, compare_triangles);
+}
+
+/** Fails unless the same triangles come of a polygon whichever corner it begins with, whichever way it runs,
+ * and however it is turned by right angles and mirrored. */
+static void expect_one_way(vxm_triangulator *tri, const double positions[BENT_MOST][3], size_t n,
+                           bool turned) {
+  static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+  uint32_t first[BENT_MOST][3], other[BENT_MOST][3], corners[BENT_MOST];
+  for (size_t way = 0; way < (turned ? 48 : 1); way++) {
+    double at[BENT_MOST][3];
+    for (size_t i = 0; i < n; i++)
+      for (int a = 0; a < 3; a++)
+        at[i][a] = positions[i][orders[way / 8][a]] * (way >> a & 1 ? -1 : 1);
+    for (size_t begin = 0; begin < 2 * n; begin++) {
+      for (size_t i = 0; i < n; i++)
+        corners[i] = (uint32_t)((begin + (begin < n ? i : n - i)) % n);
+      triangles_of(way + begin > 0 ? other : first, tri, at[0], corners, n);
+      if (way + begin > 0)
+        assert_memory_equal(other, first, (n - 2) * sizeof *first);
+    }
+  }
+}
+
+/** Bent polygons, convex or not, some of which cross themselves. */
+static void test_bent(void **state) {
+  (void)state;
+  vxm_rng rng = {48};
+  vxm_triangulator tri;
+  vxm_triangulator_open(&tri, context);
+  for (int round = 0; round < ROUNDS(600); round++) {
+    double at[BENT_MOST][3], axis[2][3];
+    size_t n = round % 2 ? 4 : 4 + (size_t)vxm_rng_below(&rng, BENT_MOST - 3);
+    for (int a = 0; a < 3; a++) {
+      axis[0][a] = vxm_rng_unit(&rng) - 0.5;
+      axis[1][a] = vxm_rng_unit(&rng) - 0.5;
+    }
+    for (size_t i = 0; i < n; i++) {
+      double angle = 6.283185307179586 * (double)i / (double)n, radius = 0.2 + vxm_rng_unit(&rng);
+      for (int a = 0; a < 3; a++)
+        at[i][a] = radius * (cos(angle) * axis[0][a] + sin(angle) * axis[1][a]) +
+                   (round % 4 ? 0.1 : 1) * (vxm_rng_unit(&rng) - 0.5);
+    }
+    expect_one_way(&tri, (const double(*)[3])at, n, true);
+  }
+  vxm_triangulator_close(&tri);
+}
+
+/** Equal polygons become the same triangles, also where lengths are equal: regular ones, on a lattice. */
+static void test_ties(void **state) {
+  (void)state;
+  static const double octagon[8][2] = {{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}};
+  vxm_triangulator tri;
+  vxm_triangulator_open(&tri, context);
+  for (int shape = 0; shape < 6; shape++) {
+    double at[BENT_MOST][3] = {{0}};
+    size_t n = shape < 3 ? 8 : 4;
+    for (size_t i = 0; i < n; i++)
+      for (int k = 0; k < 2; k++)
+        at[i][(shape + k) % 3] = octagon[(8 / n) * i][k];
+    expect_one_way(&tri, (const double(*)[3])at, n, false);
+  }
+  vxm_triangulator_close(&tri);
+}
+
+/** Of four corners: the shorter diagonal where both lie inside, else that which does. */
+static void test_diagonals(void **state) {
+  (void)state;
+  static const struct {
+    double at[4][3];
+    bool second; /**< from corner 1 to corner 3 */
+  } cases[] = {
+      {{{0, 0, 0}, {2, 0, 1}, {3, 3, 0}, {0, 2, 1}}, true},     /* a convex one, seen from above */
+      {{{0, 0, 0}, {3, 0, 4}, {3, 3, 0}, {0, 3, -4}}, false},   /* as long from above, not in space */
+      {{{0, 0, 0}, {9, 1, 0}, {3, 3, 0}, {1, 9, 0}}, false},    /* the longer one would lie outside */
+      {{{0, 0, 0}, {1, 4, 0}, {0, 5, 0}, {-1, 4, 0}}, true},    /* a kite */
+      {{{0, 0, 0}, {1, 4, 0}, {0, 3, 0}, {-1, 4, 0}}, false},   /* an arrow, whose longer one lies inside */
+      {{{0, 0, 0}, {4, 0, 0}, {1, 3, 0}, {0.5, 1.5, 0}}, true}, /* a corner in line */
+      {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, false},    /* as long: from what is first in space */
+      {{{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}}, true},
+  };
+  vxm_triangulator tri;
+  vxm_triangulator_open(&tri, context);
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
+    for (int scale = -1000; scale <= 1000; scale += 500) {
+      double at[4][3];
+      uint32_t made[BENT_MOST][3];
+      for (int i = 0; i < 4; i++)
+        for (int a = 0; a < 3; a++)
+          at[i][a] = ldexp(cases[c].at[i][a], scale);
+      triangles_of(made, &tri, at[0], (uint32_t[]){0, 1, 2, 3}, 4);
+      if ((made[0][0] == 0 && made[0][1] == 1 && made[0][2] == 3) != cases[c].second)
+        fail_msg("case %zu, scale %d", c, scale);
+    }
+  vxm_triangulator_close(&tri);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_turn),
@@ -359,6 +477,9 @@ int main(void) {
       cmocka_unit_test(test_no_area),
       cmocka_unit_test(test_large_crossings),
       cmocka_unit_test(test_crossings),
+      cmocka_unit_test(test_bent),
+      cmocka_unit_test(test_ties),
+      cmocka_unit_test(test_diagonals),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

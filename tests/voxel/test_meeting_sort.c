@@ -18,10 +18,9 @@ static vxm_meeting random_meeting(vxm_rng *rng, const vxm_view *view, int64_t si
   vxm_meeting m = {.offset = {(int32_t)number, 0, 0}};
   if (kind < 7)
     m.cell = vxm_cell_number(view, VXM_THIN_DOMINANT_LINKS, kind % 3, lowest);
-  else if (kind < 9) {
+  else if (kind < 9)
     m.cell = vxm_cell_number(view, VXM_THIN_LINKS, kind % 3, lowest);
-    m.detail = (uint32_t)vxm_rng_below(rng, 4);
-  } else
+  else
     m.cell = vxm_cell_number(view, VXM_THIN_SQUARES, VXM_CELL_SQUARE + (int)vxm_rng_below(rng, 3), lowest);
   return m;
 }
@@ -36,7 +35,7 @@ static int by_cell(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/** Fails unless stages follow one another, those of a cell too, and its polygons are in order. */
+/** Fails unless stages follow one another, and those of a cell. */
 static void check_order(const vxm_meeting *meetings, size_t count) {
   uint64_t *cells = calloc(count + 1, sizeof *cells);
   size_t runs = 0;
@@ -45,8 +44,6 @@ static void check_order(const vxm_meeting *meetings, size_t count) {
     bool same = m > 0 && meetings[m].cell == meetings[m - 1].cell;
     if (m > 0)
       assert_true(vxm_cell_stage(meetings[m - 1].cell) <= vxm_cell_stage(meetings[m].cell));
-    if (same && vxm_cell_kind(meetings[m].cell) < VXM_LINK_DIRECTIONS)
-      assert_true(meetings[m - 1].detail <= meetings[m].detail);
     if (!same)
       cells[runs++] = meetings[m].cell;
   }
@@ -61,7 +58,7 @@ static void check_same(vxm_meeting *meetings, const vxm_meeting *made, size_t co
   qsort(meetings, count, sizeof *meetings, by_number);
   for (size_t m = 0; m < count; m++) {
     assert_int_equal(meetings[m].offset[0], made[m].offset[0]);
-    assert_true(meetings[m].cell == made[m].cell && meetings[m].detail == made[m].detail);
+    assert_true(meetings[m].cell == made[m].cell);
   }
 }
 

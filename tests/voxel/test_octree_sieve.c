@@ -58,7 +58,7 @@ static void check_triangle(const vxm_octree_sieve *sieve, const vxm_view *view, 
                            const vxm_point corner[3], counts *sum) {
   const vxm_kernels *builds[4];
   size_t count = vxm_kernels_all(builds);
-  thin_triangle t = {.is_edge = {true, true, true}};
+  thin_triangle t;
   memcpy(t.at, corner, sizeof t.at);
   for (size_t b = 0; b < 2 * count; b++) {
     const vxm_sieve_kernels *build = vxm_sieve_kernels_of(builds[b / 2]);

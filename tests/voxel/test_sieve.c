@@ -184,13 +184,13 @@ static void check_window(vxm_rng *rng, const vxm_triangle_set *triangles, const 
   assert_true(window->words && maps && cells && meets);
   random_solid(rng, window, b);
   vxm_thin_job job = {.triangles = triangles,
-                      .corners = vxm_pieces_of(triangles),
+                      .corners = (const uint32_t(*)[3])triangles->corners,
                       .placed = placed,
                       .view = vxm_view_of(window),
                       .slow = window->layout.slow,
                       .directions = 3};
   for (size_t t = 0; sum && t < all; t++) {
-    thin_triangle one = {.is_edge = {true, true, true}};
+    thin_triangle one;
     if (vxm_role_of(triangles, t) != VXM_ROLE_FACE) /* cones over what is open do not count */
       continue;
     for (int k = 0; k < 3; k++)

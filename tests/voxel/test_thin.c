@@ -144,7 +144,7 @@ static void test_several_open_tubes(void **state) {
   }
 }
 
-/** Non-convex polygons: the triangles that cover them cover what they do not, too. */
+/** Non-convex polygons: the triangles lie inside them. */
 static void test_polygons(void **state) {
   (void)state;
   vxm_rng rng = {503};
@@ -258,8 +258,8 @@ static void test_plates_are_one_voxel_thick(void **state) {
   }
 }
 
-/** A rod thinner than a voxel along two axes has one voxel in each layer of centres. One of triangles may
- * step aside where the middle of its squares does not tell, as diagonals cross each layer elsewhere. */
+/** A rod thinner than a voxel along two axes has one voxel in each layer of centres. It may step aside where
+ * the middle of its squares does not tell, as diagonals cross each layer elsewhere. */
 static void test_rods_are_one_voxel_thick(void **state) {
   (void)state;
   vxm_rng rng = {507};
@@ -278,8 +278,6 @@ static void test_rods_are_one_voxel_thick(void **state) {
       shape_box(soup, low, high);
     vxm_grid *grid = thin_grid(soup, &space, VXM_THIN_KEEP, NULL);
     int64_t layers = (int64_t)(floor(high[axis] + 0.5) - floor(low[axis] + 0.5));
-    if (round % 2 == 0)
-      assert_int_equal(columns_of(grid, axis, layers), 1);
     assert_int_equal(vxm_grid_count(grid), layers);
     vxm_grid_destroy(grid);
     vxm_soup_destroy(soup);

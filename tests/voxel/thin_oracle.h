@@ -10,11 +10,11 @@
 #include "engine.h"
 #include "surface_oracle.h"
 
-/** A triangle of a face, and which of its sides are edges of that: of a polygon the others are inside it. */
+#include "mesh/triangulate.h"
+
+/** A triangle of a face. */
 typedef struct thin_triangle {
   vxm_point at[3];
-  bool is_edge[3];
-  uint32_t polygon; /**< 0, or one beyond the number of a face of more than three corners */
 } thin_triangle;
 
 typedef struct thin_mesh {
@@ -23,39 +23,27 @@ typedef struct thin_mesh {
   size_t count;
 } thin_mesh;
 
-/** Where a polygon is covered from (voxel/parts/triangle_set.h): means weigh its triangles. */
-static inline size_t thin_apex(const vxm_soup *soup, const uint32_t *corner, size_t n) {
-  size_t apex = 0;
-  for (size_t c = 1; c < n && n > 3; c++) {
-    const double *p = soup->positions + 3 * (size_t)corner[c],
-                 *q = soup->positions + 3 * (size_t)corner[apex];
-    int a = 0;
-    while (a < 2 && p[a] == q[a])
-      a++;
-    apex = p[a] < q[a] ? c : apex;
-  }
-  return apex;
-}
-
+/** Polygons become the same triangles as everywhere (mesh/triangulate.h), but for those with two equal
+ * corners. */
 static inline thin_mesh thin_mesh_of(const vxm_soup *soup, const vxm_space *space) {
   thin_mesh mesh = {.lattice = vxm_lattice_of(space)};
-  mesh.triangles = calloc(soup->corner_count + 1, sizeof *mesh.triangles);
+  vxm_triangulator triangulator;
+  vxm_triangulator_open(&triangulator, soup->context);
+  mesh.triangles = calloc(3 * soup->corner_count + 1, sizeof *mesh.triangles);
   assert_non_null(mesh.triangles);
   for (size_t f = 0; f < soup->face_count; f++) {
     const uint32_t *corner = soup->indices + soup->offsets[f];
-    size_t n = soup->offsets[f + 1] - soup->offsets[f], apex = thin_apex(soup, corner, n);
-    for (size_t i = 1; i + 1 < n; i++) {
+    size_t n = soup->offsets[f + 1] - soup->offsets[f];
+    assert_int_equal(vxm_triangulate(&triangulator, soup->positions, corner, n, &corner, NULL), VXM_OK);
+    for (size_t i = 0; i + 2 < n; i++, corner += 3) {
+      if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
+        continue;
       thin_triangle *t = &mesh.triangles[mesh.count++];
-      const size_t own[3] = {apex, (apex + i) % n, (apex + i + 1) % n};
       for (int k = 0; k < 3; k++)
-        assert_true(
-            vxm_lattice_place(&mesh.lattice, soup->positions + 3 * (size_t)corner[own[k]], &t->at[k]));
-      t->is_edge[0] = i == 1;
-      t->is_edge[1] = true;
-      t->is_edge[2] = i + 2 == n;
-      t->polygon = n > 3 ? (uint32_t)f + 1 : 0;
+        assert_true(vxm_lattice_place(&mesh.lattice, soup->positions + 3 * (size_t)corner[k], &t->at[k]));
     }
   }
+  vxm_triangulator_close(&triangulator);
   return mesh;
 }
 
@@ -280,16 +268,11 @@ static inline void thin_assert_links(const thin_mesh *mesh, const uint8_t *kept,
           const int64_t to[3] = {v[0] + step[0], v[1] + step[1], v[2] + step[2]};
           if (!thin_inside(space, to) || kept[thin_at(space, v)] || kept[thin_at(space, to)])
             continue;
-          bool odd = false;
           for (size_t t = 0; t < mesh->count; t++) {
             double part;
-            bool more = t + 1 < mesh->count && mesh->triangles[t].polygon &&
-                        mesh->triangles[t].polygon == mesh->triangles[t + 1].polygon;
-            odd ^= thin_crosses_link(mesh, &mesh->triangles[t], v, step, &part);
-            if (odd && !more)
+            if (thin_crosses_link(mesh, &mesh->triangles[t], v, step, &part))
               fail_msg("triangle %zu crosses the link over %d %d %d from voxel %d %d %d, which has no voxel",
                        t, step[0], step[1], step[2], (int)v[0], (int)v[1], (int)v[2]);
-            odd &= more;
           }
         }
 }
@@ -303,7 +286,7 @@ static inline void thin_assert_squares_and_cubes(const thin_mesh *mesh, const ui
       int64_t lowest[3];
       double offset[3];
       bool inside;
-      for (int axis = 0; axis < 3 && t->is_edge[k]; axis++)
+      for (int axis = 0; axis < 3; axis++)
         for (int64_t plane = 0; plane < space->dims[axis]; plane++)
           if (thin_passes(mesh, &t->at[k], &t->at[(k + 1) % 3], axis, plane, lowest, offset) &&
               !thin_has_corner(kept, space, lowest, axis, &inside) && inside)

@@ -11,7 +11,6 @@ typedef struct thin_record {
   int64_t lowest[3];
   uint64_t order;
   int stage, kind;
-  uint32_t polygon;
   int64_t from_middle[3]; /**< 2^20 a voxel; of a link, the first one is along it */
 } thin_record;
 
@@ -22,14 +21,14 @@ typedef struct thin_records {
 } thin_records;
 
 static inline void thin_note(thin_records *records, int stage, int kind, const int64_t lowest[3],
-                             const double from_middle[3], uint32_t polygon) {
+                             const double from_middle[3]) {
   if (records->count == records->capacity) {
     records->capacity = 2 * records->capacity + 64;
     records->list = realloc(records->list, records->capacity * sizeof *records->list);
     assert_non_null(records->list);
   }
   thin_record *r = &records->list[records->count++];
-  *r = (thin_record){.stage = stage, .kind = kind, .polygon = polygon};
+  *r = (thin_record){.stage = stage, .kind = kind};
   for (int a = 2; a >= 0; a--) {
     r->lowest[a] = lowest[a];
     r->from_middle[a] = llrint(ldexp(from_middle[a], 20));
@@ -49,7 +48,7 @@ static inline void thin_note_links(thin_records *records, const thin_mesh *mesh,
           if (!thin_crosses_link(mesh, t, v, thin_steps[d], &along[0]))
             continue;
           along[0] -= 0.5;
-          thin_note(records, d < 3 ? thin_dominant(t) != d : d < 9 ? 2 : 3, d, v, along, t->polygon);
+          thin_note(records, d < 3 ? thin_dominant(t) != d : d < 9 ? 2 : 3, d, v, along);
         }
 }
 
@@ -63,13 +62,11 @@ static inline void thin_note_squares(thin_records *records, const thin_mesh *mes
         const vxm_point *p = &t->at[k], *q = &t->at[(k + 1) % 3];
         if (!thin_passes(mesh, p, q, axis, plane, lowest[ends], offset[ends]))
           continue;
-        if (t->polygon && t->is_edge[k])
-          thin_note(records, 4, 13 + axis, lowest[ends], offset[ends], 0);
         ends++;
       }
-      if (ends == 2 && !t->polygon && memcmp(lowest[0], lowest[1], sizeof lowest[0]) == 0)
+      if (ends == 2 && memcmp(lowest[0], lowest[1], sizeof lowest[0]) == 0)
         for (int e = 0; e < 2; e++)
-          thin_note(records, 4, 13 + axis, lowest[e], offset[e], 0);
+          thin_note(records, 4, 13 + axis, lowest[e], offset[e]);
     }
 }
 
@@ -87,7 +84,7 @@ static inline void thin_note_cube(thin_records *records, const thin_mesh *mesh, 
     for (int a = 0; a < 3; a++)
       offset[a] =
           (double)(t->at[k].at[a] - (lowest[a] + 1) * mesh->lattice.unit) / (double)mesh->lattice.unit;
-    thin_note(records, 5, 16, lowest, offset, 0);
+    thin_note(records, 5, 16, lowest, offset);
   }
 }
 
@@ -97,9 +94,7 @@ static inline int thin_record_order(const void *a, const void *b) {
     return p->stage - q->stage;
   if (p->kind != q->kind)
     return p->kind - q->kind;
-  if (p->order != q->order)
-    return p->order < q->order ? -1 : 1;
-  return (p->polygon > q->polygon) - (p->polygon < q->polygon);
+  return (p->order > q->order) - (p->order < q->order);
 }
 
 /** Whether an end is the upper one along an axis: 1 or -1; 0 where the cell does not span the axis. */
@@ -109,21 +104,13 @@ static inline int thin_side(int kind, int axis, int end) {
   return kind == 13 + axis ? 0 : end >> axis & 1 ? 1 : -1;
 }
 
-/** Whether a record counts: a polygon that has an even number of them does not cover the cell. */
-static inline bool thin_counts(const thin_record *r, size_t count, size_t i) {
-  size_t same = 0;
-  for (size_t j = 0; j < count; j++)
-    same += r[j].polygon == r[i].polygon;
-  return r[i].polygon == 0 || same % 2 == 1;
-}
-
 /** Sets the voxel that the records of one cell ask for if none was set at its ends. */
 static inline void thin_choose(const thin_record *r, size_t count, const vxm_space *space,
                                const uint8_t *before, uint8_t *bytes) {
   int64_t sum[3] = {0, 0, 0}, best = 0, chosen[3] = {-1, -1, -1};
   for (size_t i = 0; i < count; i++)
     for (int a = 0; a < 3; a++)
-      sum[a] += thin_counts(r, count, i) ? r[i].from_middle[a] : 0;
+      sum[a] += r[i].from_middle[a];
   for (int end = 0; end < 8; end++) { /* the first of equally near ones, x changing first */
     int64_t v[3], near = 0;
     bool met = false, is_end = true;
@@ -138,7 +125,7 @@ static inline void thin_choose(const thin_record *r, size_t count, const vxm_spa
     if (before[thin_at(space, v)])
       return;
     for (size_t i = 0; i < count && !met; i++) {
-      met = thin_counts(r, count, i);
+      met = true;
       for (int a = 0; a < 3; a++)
         met &= thin_side(r->kind, a, end) * r[i].from_middle[a] >= 0;
     }

@@ -41,7 +41,7 @@ static double surface_area(const vxm_voxel_pass *solid, bool lost) {
   for (size_t t = 0; t < triangles->triangle_count; t++) {
     if (vxm_role_of(triangles, t) != VXM_ROLE_FACE || (lost && !is_lost(solid, triangles->part[t])))
       continue;
-    const uint32_t *k = vxm_pieces_of(triangles)[t];
+    const uint32_t *k = triangles->corners[t];
     const vxm_point corner[3] = {vxm_snapped_points_at(&solid->placed, k[0]),
                                  vxm_snapped_points_at(&solid->placed, k[1]),
                                  vxm_snapped_points_at(&solid->placed, k[2])};

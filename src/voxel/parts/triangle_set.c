@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/parts/triangle_set.h"
+#include "mesh/quad_diagonal.h"
+#include "mesh/triangulate.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -9,10 +11,10 @@
 typedef struct builder {
   vxm_triangle_set *triangles;
   const vxm_soup *soup;
-  size_t *next;    /**< per part: where the next triangle goes, or how many there are */
-  bool polygons;   /**< a face has more than three corners */
-  bool cuts;       /**< a polygon is cut into pieces */
-  vxm_error error; /**< of the last allocation that failed */
+  size_t *next;       /**< per part: where the next triangle goes, or how many there are */
+  uint32_t (*cut)[3]; /**< the triangles of all faces of more than four corners, one after another */
+  size_t cut_next;    /**< of them: the first one of the next such face */
+  vxm_error error;    /**< of the last allocation that failed */
 } builder;
 
 static void *allocate(builder *b, size_t count, size_t size) {
@@ -24,23 +26,43 @@ static void *allocate_raw(builder *b, size_t count, size_t size) {
   return vxm_alloc(b->triangles->context, count, size, &b->error);
 }
 
-/* ---- Covering polygons by triangles ---- */
+/* ---- Cutting polygons into triangles ---- */
 
-static bool comes_before(const double *p, const double *q) {
-  for (int a = 0; a < 3; a++)
-    if (p[a] != q[a])
-      return p[a] < q[a];
-  return false;
+/** How many triangles the faces have that are cut before they are counted. */
+static size_t count_cut(const vxm_soup *soup) {
+  size_t count = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t n = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
+    count += n > 4 ? n - 2 : 0;
+  }
+  return count;
 }
 
-/** The corner from which a polygon is covered: the first in space, so that equal polygons are covered alike.
- */
-static size_t covering_corner(const vxm_soup *soup, const uint32_t *corner, size_t n) {
-  size_t first = 0;
-  for (size_t c = 1; c < n; c++)
-    if (comes_before(vxm_position(soup, corner[c]), vxm_position(soup, corner[first])))
-      first = c;
-  return first;
+/** Faces of more than four corners, which take more work than to be cut twice. */
+static vxm_status cut_large(builder *b) {
+  const vxm_soup *soup = b->soup;
+  size_t count = count_cut(soup), at = 0;
+  vxm_status status = VXM_OK;
+  if (count == 0)
+    return VXM_OK;
+  b->cut = allocate_raw(b, count, sizeof *b->cut);
+  if (!b->cut)
+    return b->error.code;
+  vxm_triangulator triangulator;
+  vxm_triangulator_open(&triangulator, b->triangles->context);
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(soup, f, &n), *triangles;
+    status = vxm_ask_at(f, b->triangles->context, &b->error);
+    if (n <= 4 || status != VXM_OK)
+      continue;
+    status = vxm_triangulate(&triangulator, soup->positions, corner, n, &triangles, &b->error);
+    if (status == VXM_OK)
+      memcpy(b->cut + at, triangles, (n - 2) * sizeof *b->cut);
+    at += n - 2;
+  }
+  vxm_triangulator_close(&triangulator);
+  return status;
 }
 
 /** A triangle with two equal corners covers nothing. */
@@ -49,13 +71,10 @@ static bool has_three_corners(uint32_t p, uint32_t q, uint32_t r) {
 }
 
 /** Counts a triangle of its part (no triangles yet) or puts it in place. */
-static inline void add(builder *b, uint32_t part, uint32_t polygon, uint32_t p, uint32_t q, uint32_t r) {
+static inline void add(builder *b, uint32_t part, uint32_t p, uint32_t q, uint32_t r) {
   size_t at = b->next[part]++;
-  b->polygons |= polygon != 0;
   if (!b->triangles->corners)
     return;
-  if (b->triangles->polygon)
-    b->triangles->polygon[at] = polygon;
   uint32_t *corner = b->triangles->corners[at];
   corner[0] = p;
   corner[1] = q;
@@ -63,42 +82,46 @@ static inline void add(builder *b, uint32_t part, uint32_t polygon, uint32_t p, 
   b->triangles->part[at] = part;
 }
 
-/** Cuts a polygon that triangles from `begin` on cover; not one with such as cover nothing, which are left
- * out.
- */
-static void cut(builder *b, const uint32_t *corner, size_t n, size_t begin, size_t end) {
-  vxm_triangle_set *triangles = b->triangles;
-  if (n < VXM_CUT_CORNERS || end - begin != n - 2)
-    return;
-  b->cuts = true;
-  if (triangles->corners)
-    vxm_cut_polygon(corner, n, triangles->pieces + begin, triangles->edges + begin);
+/** The same of one that may have two equal corners. */
+static inline void add_face(builder *b, uint32_t part, uint32_t p, uint32_t q, uint32_t r) {
+  if (has_three_corners(p, q, r))
+    add(b, part, p, q, r);
 }
 
-static inline void cover_face(builder *b, size_t face) {
+static inline void cut_quad(builder *b, uint32_t part, const uint32_t corner[4]) {
+  uint32_t v = corner[0], w = corner[1], x = corner[2], y = corner[3];
+  bool differ = has_three_corners(v, w, x) && has_three_corners(x, y, v) && w != y;
+  if (differ && !b->triangles->corners) { /* two, whichever they are */
+    b->next[part] += 2;
+    return;
+  }
+  const double *at[4];
+  for (int k = 0; k < 4; k++)
+    at[k] = vxm_position(b->soup, corner[k]);
+  size_t k = vxm_quad_diagonal(at);
+  add_face(b, part, corner[k], corner[k + 1], corner[k + 2]);
+  add_face(b, part, corner[k], corner[k + 2], corner[(k + 3) % 4]);
+}
+
+static inline void cut_face(builder *b, size_t face) {
   const vxm_split *split = &b->triangles->split;
   size_t n;
   const uint32_t *corner = vxm_face(b->soup, face, &n);
   uint32_t part = split->part[split->component[face]];
-  if (n == 3) {
-    if (has_three_corners(corner[0], corner[1], corner[2]))
-      add(b, part, 0, corner[0], corner[1], corner[2]);
-    return;
-  }
-  size_t begin = b->next[part], apex = n > 3 ? covering_corner(b->soup, corner, n) : 0;
-  for (size_t i = 1; i + 1 < n; i++) {
-    uint32_t p = corner[apex], q = corner[(apex + i) % n], r = corner[(apex + i + 1) % n];
-    if (has_three_corners(p, q, r))
-      add(b, part, n > 3 ? (uint32_t)face + 1 : 0, p, q, r);
-  }
-  cut(b, corner, n, begin, b->next[part]);
+  if (n == 3)
+    add_face(b, part, corner[0], corner[1], corner[2]);
+  else if (n == 4)
+    cut_quad(b, part, corner);
+  for (size_t t = 0; n > 4 && t + 2 < n; t++, b->cut_next++)
+    add_face(b, part, b->cut[b->cut_next][0], b->cut[b->cut_next][1], b->cut[b->cut_next][2]);
 }
 
 static bool add_triangles(builder *b) {
+  b->cut_next = 0;
   for (size_t f = 0; f < b->soup->face_count; f++) {
     if (vxm_ask_at(f, b->triangles->context, &b->error) != VXM_OK)
       return false;
-    cover_face(b, f);
+    cut_face(b, f);
   }
   return true;
 }
@@ -109,7 +132,7 @@ static bool add_caps(builder *b) {
   for (size_t l = 0; split->cap_begin && l < split->loops.count; l++)
     for (size_t t = split->cap_begin[l]; t < split->cap_begin[l + 1]; t++) {
       const uint32_t *v = split->caps.triangles[t];
-      add(b, split->loop_part[l], 0, v[0], v[1], v[2]);
+      add(b, split->loop_part[l], v[0], v[1], v[2]);
     }
   return true;
 }
@@ -122,7 +145,7 @@ static bool add_cones(builder *b) {
     uint32_t part = split->loop_part[l];
     for (size_t s = loops->begin[l]; s < loops->begin[l + 1]; s++) {
       const vxm_edge *edge = &split->edges.edges[loops->edge[s]];
-      add(b, part, 0, edge->a, edge->b, vxm_apex_of(b->triangles, part));
+      add(b, part, edge->a, edge->b, vxm_apex_of(b->triangles, part));
     }
   }
   return true;
@@ -135,7 +158,7 @@ static vxm_status make_triangles(builder *b) {
   size_t part_count = triangles->split.part_count;
   b->next = allocate(b, part_count, sizeof *b->next);
   triangles->parts = allocate(b, part_count, sizeof *triangles->parts);
-  if (!triangles->parts || !b->next)
+  if (!triangles->parts || !b->next || cut_large(b) != VXM_OK)
     return b->error.code;
   for (int w = 0; w < 3; w++) {
     if (!walk[w](b))
@@ -160,12 +183,6 @@ static vxm_status make_triangles(builder *b) {
                     total);
   triangles->triangle_count = total;
   triangles->part = allocate_raw(b, total, sizeof *triangles->part);
-  triangles->polygon = b->polygons ? allocate(b, total, sizeof *triangles->polygon) : NULL;
-  if (b->polygons && !triangles->polygon)
-    return b->error.code;
-  if (b->cuts && (!(triangles->pieces = allocate_raw(b, total, sizeof *triangles->pieces)) ||
-                  !(triangles->edges = allocate(b, total, sizeof *triangles->edges))))
-    return b->error.code;
   triangles->corners = allocate_raw(b, total, sizeof *triangles->corners);
   if (!triangles->corners || !triangles->part)
     return b->error.code;
@@ -232,33 +249,16 @@ static void renumber_apexes(vxm_triangle_set *triangles, size_t count) {
   triangles->point_count = count + triangles->split.part_count;
 }
 
-/** Numbers the points of pieces as the triangles that cover the same polygons have them. */
-static void renumber_pieces(vxm_triangle_set *triangles, const uint32_t *number) {
-  for (size_t f = 0; f < triangles->triangle_count && triangles->pieces; f++)
-    for (int k = 0; k < 3 && triangles->edges[f]; k++)
-      triangles->pieces[f][k] = number[triangles->pieces[f][k]];
-}
-
-/** All other triangles are pieces as they are. */
-static void copy_to_pieces(vxm_triangle_set *triangles) {
-  for (size_t f = 0; f < triangles->triangle_count && triangles->pieces; f++)
-    if (!triangles->edges[f])
-      memcpy(triangles->pieces[f], triangles->corners[f], sizeof triangles->pieces[f]);
-}
-
 static vxm_status gather_points(builder *b) {
   vxm_triangle_set *triangles = b->triangles;
   size_t count = 0;
   uint32_t *number = allocate_raw(b, triangles->first_apex, sizeof *number);
   triangles->vertex = allocate_raw(b, triangles->first_apex + 1, sizeof *triangles->vertex);
   bool done = number && triangles->vertex && renumber(b, number, triangles->vertex, &count);
-  if (done)
-    renumber_pieces(triangles, number);
   vxm_free(triangles->context, number);
   if (!done)
     return b->error.code;
   renumber_apexes(triangles, count);
-  copy_to_pieces(triangles);
   triangles->positions = allocate_raw(b, triangles->first_apex, sizeof *triangles->positions);
   if (!triangles->positions)
     return b->error.code;
@@ -341,6 +341,7 @@ vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, 
   if (status == VXM_OK)
     status = gather_points(&b);
   vxm_free(out->context, b.next);
+  vxm_free(out->context, b.cut);
   if (status == VXM_OK)
     status = measure(out, &local);
   if (status == VXM_OK)
@@ -356,9 +357,6 @@ void vxm_triangle_set_destroy(vxm_triangle_set *triangles) {
   vxm_free(triangles->context, triangles->vertex);
   vxm_free(triangles->context, triangles->parts);
   vxm_free(triangles->context, triangles->part);
-  vxm_free(triangles->context, triangles->polygon);
-  vxm_free(triangles->context, triangles->pieces);
-  vxm_free(triangles->context, triangles->edges);
   vxm_free(triangles->context, triangles->corners);
   *triangles = (vxm_triangle_set){.context = triangles->context, .split = {.context = triangles->context}};
 }

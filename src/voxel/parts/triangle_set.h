@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * The triangles that voxelization works on: polygons covered by triangles, sorted by part. They name points
+ * The triangles that voxelization works on: polygons cut into triangles, sorted by part. They name points
  * by number; where these lie on a lattice is told by voxel/parity/snapped_points.h, so that one mesh can be
  * placed many times.
  *
- * A polygon of n corners becomes the n - 2 triangles from one of its corners to its edges. They may overlap
- * or run backwards; counted mod 2 they cover the polygon exactly (2D simplicial covering, Ogayar et al.,
- * section III, with the apex in a corner). The inner edges cancel in pairs, so that a closed set of polygons
+ * A polygon of n corners becomes the n - 2 triangles that vxm_triangulate makes of it, as everywhere. Those
+ * of one that crosses itself may overlap or run backwards; counted mod 2 they cover it exactly (2D simplicial
+ * covering, Ogayar et al., section III). The inner edges cancel in pairs, so that a closed set of polygons
  * stays closed.
  *
  * Odd edges (those with an odd number of faces) get two more sets of triangles, each of which closes a part
@@ -21,7 +21,6 @@
 #define VXM_VOXEL_PARTS_TRIANGLE_SET_H
 
 #include "voxel/parts/parts.h"
-#include "voxel/parts/polygon_cuts.h"
 
 typedef enum vxm_triangle_role { VXM_ROLE_FACE = 1, VXM_ROLE_CAP = 2, VXM_ROLE_CONE = 4 } vxm_triangle_role;
 
@@ -48,12 +47,6 @@ typedef struct vxm_triangle_set {
   const vxm_soup *soup;
   uint32_t (*corners)[3]; /**< points of each triangle */
   uint32_t *part;         /**< of each triangle */
-  uint32_t *polygon; /**< of each triangle: 0, or one more than the number of its face if that has more than
-                        three corners; its triangles follow one another. NULL = all 0 */
-  uint32_t (*pieces)[3]; /**< like `corners`, but with polygons of many corners cut into as many other
-                            triangles (voxel/parts/polygon_cuts.h). NULL = `corners` */
-  uint8_t *edges; /**< of each of them: 0, or VXM_CUT_PIECE and the sides that are edges of its polygon.
-                     NULL = all 0 */
   size_t triangle_count;
   vxm_part *parts;
   /* Points: the vertices that triangles have, and the caps' own, in the order in which triangles first have
@@ -66,18 +59,12 @@ typedef struct vxm_triangle_set {
   vxm_split split;                            /**< trimmed: counts only */
 } vxm_triangle_set;
 
-/** Splits a soup into parts and covers its polygons. Destroy with vxm_triangle_set_destroy, also after a
+/** Splits a soup into parts and cuts its polygons. Destroy with vxm_triangle_set_destroy, also after a
  * failure.
  */
 vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, vxm_split_rule rule,
                                    vxm_error *error);
 void vxm_triangle_set_destroy(vxm_triangle_set *triangles);
-
-/** The triangles to look at where it matters where faces lie; for crossings, which are only counted, take
- * `corners`. */
-static inline const uint32_t (*vxm_pieces_of(const vxm_triangle_set *triangles))[3] {
-  return (const uint32_t(*)[3])(triangles->pieces ? triangles->pieces : triangles->corners);
-}
 
 /** The point that is the apex of a part. */
 static inline uint32_t vxm_apex_of(const vxm_triangle_set *triangles, size_t part) {

@@ -128,23 +128,10 @@ unsigned vxm_cell_boxes(const int32_t offset[3], int span) {
 /** Adds up meetings; returns the ends whose boxes the surface meets. */
 static unsigned add_up(const vxm_meeting *meetings, size_t count, int kind, int64_t sum[3]) {
   unsigned met = 0;
-  if (kind >= VXM_LINK_DIRECTIONS) {
-    for (size_t m = 0; m < count; m++) {
-      for (int s = 0; s < 3; s++)
-        sum[s] += meetings[m].offset[s];
-      met |= meetings[m].detail;
-    }
-    return met;
-  }
-  for (size_t m = 0, next; m < count; m = next) {
-    for (next = m + 1; next < count && meetings[next].detail == meetings[m].detail; next++)
-      ;
-    if (meetings[m].detail && (next - m) % 2 == 0)
-      continue;
-    for (size_t i = m; i < next; i++) {
-      sum[0] += meetings[i].offset[0];
-      met |= vxm_cell_boxes(meetings[i].offset, 1);
-    }
+  for (size_t m = 0; m < count; m++) {
+    for (int s = 0; s < 3; s++)
+      sum[s] += meetings[m].offset[s];
+    met |= kind < VXM_LINK_DIRECTIONS ? vxm_cell_boxes(meetings[m].offset, 1) : meetings[m].met;
   }
   return met;
 }

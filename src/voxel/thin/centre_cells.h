@@ -35,15 +35,14 @@ typedef enum vxm_thin_stage {
 /** Parts of a voxel in an offset, beyond which it is rounded. */
 enum { VXM_OFFSET_UNIT = 1 << 20 };
 
-/** The surface in a link, square or cube: a face that crosses the link or lies in the cube, a section or an
- * edge in the square. */
+/** The surface in a link, square or cube: a face that crosses the link or lies in the cube, a section in the
+ * square. */
 typedef struct vxm_meeting {
   uint64_t cell;     /**< vxm_cell_number */
   int32_t offset[3]; /**< from the middle, along the axes that it spans, lowest first; parts of a voxel,
                         summed over the ends of a section or the corners of a face */
-  uint32_t detail; /**< in a link, 0, or one beyond the number of a face of more than three corners: it covers
-                      only where an odd number of its triangles do; else the voxels at the ends whose boxes
-                      the surface meets there, a bit for each */
+  uint32_t met; /**< in a square or a cube the voxels at the ends whose boxes the surface meets there, a bit
+                   for each */
 } vxm_meeting;
 
 /** Bits of a coordinate in the number of a bit of an octree. */
@@ -211,10 +210,9 @@ bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int coun
 
 /**
  * Adds up meetings and chooses the voxel: among those whose box the surface meets there and
- * which the view holds, the one nearest to the mean. A polygon that meets it an even number of times does not
- * count.
+ * which the view holds, the one nearest to the mean.
  *
- * @param count meetings of one link, square or cube, polygons in order
+ * @param count meetings of one link, square or cube
  * @return false if there is no such voxel, or one at the ends is set by now
  */
 bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]);

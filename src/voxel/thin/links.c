@@ -64,9 +64,7 @@ static void put_link(const frame *f, int64_t ends[2][3], double offset) {
   vxm_thin_stage stage = f->plain
                              ? (dominant ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS)
                              : (f->direction < VXM_LINK_EDGES ? VXM_THIN_EDGE_LINKS : VXM_THIN_CORNER_LINKS);
-  const vxm_triangle_set *triangles = f->job->triangles;
-  vxm_meetings_put_link(f->meetings, view, stage, lower, f->direction, offset,
-                        triangles->polygon ? triangles->polygon[f->triangle] : 0);
+  vxm_meetings_put_link(f->meetings, view, stage, lower, f->direction, offset);
 }
 
 /** A triangle crosses the link to voxel `to` of a column, `offset` voxels beyond its middle: looks at the
@@ -175,7 +173,6 @@ void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ,
     if (d < VXM_LINK_AXES &&
         (!(differ & vxm_cell_mask((d + 1) % 3)) || !(differ & vxm_cell_mask((d + 2) % 3))))
       continue;
-    frames[d].triangle = triangle;
     frames[d].surface = &surface;
     if (d < VXM_LINK_AXES) {
       int64_t columns[3][2];

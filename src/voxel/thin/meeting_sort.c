@@ -2,7 +2,6 @@
 #include "voxel/thin/meeting_sort.h"
 #include "base/bits.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
@@ -50,24 +49,12 @@ static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count
     to[next[digit_of(d, from[m].cell, place)]++] = from[m];
 }
 
-static int compare(const void *a, const void *b) {
-  const vxm_meeting *p = a, *q = b;
-  if (p->cell != q->cell)
-    return p->cell < q->cell ? -1 : 1;
-  return (p->detail > q->detail) - (p->detail < q->detail);
-}
-
-/** Sorts a few, by cells and polygons. */
+/** Sorts a few. */
 static void sort_few(vxm_meeting *meetings, size_t count) {
-  const size_t most = 64;
-  if (count > most) {
-    qsort(meetings, count, sizeof *meetings, compare);
-    return;
-  }
   for (size_t m = 1; m < count; m++) {
     vxm_meeting one = meetings[m];
     size_t to = m;
-    for (; to > 0 && compare(&meetings[to - 1], &one) > 0; to--)
+    for (; to > 0 && meetings[to - 1].cell > one.cell; to--)
       meetings[to] = meetings[to - 1];
     meetings[to] = one;
   }
@@ -86,13 +73,6 @@ static vxm_meeting *sort_by_digits(vxm_meeting *from, vxm_meeting *to, size_t co
     vxm_meeting *sorted = to;
     to = from;
     from = sorted;
-  }
-  for (size_t m = 0, next; m < count && vxm_cell_kind(from[m].cell) < VXM_LINK_DIRECTIONS; m = next) {
-    bool polygons = false;
-    for (next = m; next < count && from[next].cell == from[m].cell; next++)
-      polygons |= from[next].detail != 0;
-    if (polygons)
-      sort_few(from + m, next - m);
   }
   return from;
 }

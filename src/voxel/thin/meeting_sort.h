@@ -6,8 +6,7 @@
 #include "voxel/thin/centre_cells.h"
 
 /**
- * Sorts by the numbers of cells, those of links by polygon, too. Cells of the first stage that have one
- * meeting may come first, in any order.
+ * Sorts by the numbers of cells. Cells of the first stage that have one meeting may come first, in any order.
  *
  * @param from is overwritten
  * @param to   room for as many

@@ -25,10 +25,10 @@ static int32_t parts_of(double offset) {
 }
 
 void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
-                           const int64_t lowest[3], int direction, double offset, uint32_t polygon) {
+                           const int64_t lowest[3], int direction, double offset) {
   vxm_meeting *m = next_of(meetings);
   if (m)
-    *m = (vxm_meeting){vxm_cell_number(view, stage, direction, lowest), {parts_of(offset)}, polygon};
+    *m = (vxm_meeting){vxm_cell_number(view, stage, direction, lowest), {parts_of(offset)}, 0};
 }
 
 void vxm_meetings_put_in_cube(vxm_meetings *meetings, size_t triangle) {
@@ -52,6 +52,6 @@ void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, co
     int32_t at[3] = {0, 0, 0};
     for (int s = 0; s < (is_cube ? 3 : 2); s++)
       m->offset[s] += at[s] = parts_of(offsets[i][s]);
-    m->detail |= vxm_cell_boxes(at, is_cube ? 3 : 2);
+    m->met |= vxm_cell_boxes(at, is_cube ? 3 : 2);
   }
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * Where the surface meets what lies between voxel centres (voxel/thin/centre_cells.h): faces cross links,
- * edges cross squares, faces lie in cubes. Only meetings at which no voxel is set are kept.
+ * sections of faces lie in squares, faces in cubes. Only meetings at which no voxel is set are kept.
  */
 #ifndef VXM_VOXEL_THIN_MEETINGS_H
 #define VXM_VOXEL_THIN_MEETINGS_H
@@ -28,7 +28,7 @@ typedef struct vxm_meetings {
 
 /** Puts a face that crosses a link into the list, `offset` voxels beyond its middle. */
 void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
-                           const int64_t lowest[3], int direction, double offset, uint32_t polygon);
+                           const int64_t lowest[3], int direction, double offset);
 /** Puts a triangle into the list of those in cubes. */
 void vxm_meetings_put_in_cube(vxm_meetings *meetings, size_t triangle);
 /** Puts what lies in a square or a cube: its `count` points are so many voxels off the middle. */
@@ -67,7 +67,6 @@ typedef struct vxm_link_frame {
   const vxm_thin_job *job;
   vxm_meetings *meetings;
   vxm_kept_bricks *kept;     /**< of the thread, if the view is of an octree */
-  size_t triangle;           /**< that is looked at */
   vxm_link_surface *surface; /**< its own */
   int direction, u, v, w;
   int inner;  /**< see vxm_octree_sieve_search */

@@ -77,36 +77,6 @@ static void look_at_square(vxm_meetings *meetings, const vxm_thin_job *job, cons
   vxm_meetings_put(meetings, &job->view, VXM_CELL_SQUARE + axis, lowest, offsets, count);
 }
 
-/** The squares across an axis that an edge passes through. */
-static void cross_planes(vxm_meetings *meetings, const vxm_thin_job *job, const vxm_point *p,
-                         const vxm_point *q, int axis) {
-  const vxm_lattice *lattice = &job->placed->lattice;
-  const vxm_view *view = &job->view;
-  if (p->at[axis] > q->at[axis]) {
-    const vxm_point *swapped = p;
-    p = q;
-    q = swapped;
-  }
-  int64_t begin = vxm_max(vxm_lattice_first(lattice, p->at[axis]), view->begin[axis]);
-  int64_t end = vxm_min(vxm_lattice_first(lattice, q->at[axis]), view->end[axis]);
-  if (begin >= end)
-    return;
-  segment s = segment_of(lattice, p, q, axis);
-  double inverse = 1.0 / (double)lattice->unit; /* a power of two */
-  for (int64_t plane = begin; plane < end; plane++) {
-    int64_t lowest[3];
-    double offset[1][3] = {{0, 0, 0}};
-    int span = 0;
-    lowest[axis] = plane;
-    for (int a = 0; a < 3; a++)
-      if (a != axis) {
-        lowest[a] = pass_plane(&s, plane, lattice->unit, inverse, a, &offset[0][span]);
-        offset[0][span++] -= 0.5;
-      }
-    look_at_square(meetings, job, lowest, axis, (const double(*)[3])offset, 1);
-  }
-}
-
 /* Two numbers at a time: along the two axes of a plane. */
 typedef double two __attribute__((vector_size(16)));
 typedef int64_t two_masks __attribute__((vector_size(16)));
@@ -280,23 +250,6 @@ static void cross_sections(const looked *l, int axis) {
       cross_tip(l, &at, &tips[i], axis);
 }
 
-/** Whether a side of a triangle is an edge of its face, rather than between two triangles that cover it. */
-static bool is_edge(const vxm_triangle_set *triangles, size_t t, int side) {
-  if (triangles->edges && triangles->edges[t])
-    return triangles->edges[t] >> side & 1;
-  bool first = t == 0 || triangles->polygon[t - 1] != triangles->polygon[t];
-  bool last = t + 1 == triangles->triangle_count || triangles->polygon[t + 1] != triangles->polygon[t];
-  return side == 1 || (side == 0 && first) || (side == 2 && last);
-}
-
-/** Those that the edges of a face of many corners cross: its triangles may cover what it does not. */
-static void meet_polygon(vxm_meetings *meetings, const vxm_thin_job *job, size_t triangle,
-                         const vxm_point points[3]) {
-  for (int side = 0; side < 3; side++)
-    for (int axis = 0; axis < 3 && is_edge(job->triangles, triangle, side); axis++)
-      cross_planes(meetings, job, &points[side], &points[(side + 1) % 3], axis);
-}
-
 /** Whether a corner lies more voxels out than there are along the longest axis, or nearly so. */
 static bool is_far(const vxm_lattice *lattice, const vxm_point p[3]) {
   const int64_t most = (VXM_DIM_MAX << 1) * lattice->unit;
@@ -332,25 +285,18 @@ static bool are_unsure(vxm_link_frame *frames, const vxm_point points[3], vxm_un
 
 void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
   const vxm_thin_job *job = frames[0].job;
-  const vxm_triangle_set *triangles = job->triangles;
   const uint32_t *corner = job->corners[triangle];
-  bool is_polygon = triangles->polygon && triangles->polygon[triangle];
   vxm_point points[3];
   for (int k = 0; k < 3; k++)
     points[k] = vxm_snapped_points_at(job->placed, corner[k]);
   /* Links of large triangles are cheaper found row by row, and some not at all by sections. */
-  bool alone = is_polygon || job->directions > VXM_LINK_AXES || is_large(&job->placed->lattice, points);
+  bool alone = job->directions > VXM_LINK_AXES || is_large(&job->placed->lattice, points);
   vxm_unsure_links unsure;
   bool told, links = are_unsure(frames, points, &unsure, &told);
   if (alone && links)
     vxm_meet_links(frames, triangle, differ, told ? &unsure : NULL);
-  if (is_polygon) {
-    meet_polygon(frames[0].meetings, job, triangle, points);
-    return;
-  }
   vxm_link_surface surface = links ? vxm_link_surface_of(points) : (vxm_link_surface){.size = {0}};
   for (int d = 0; d < VXM_LINK_AXES && links && !alone; d++) {
-    frames[d].triangle = triangle;
     frames[d].surface = &surface;
   }
   looked l = {job, frames[0].meetings, alone || !links ? NULL : frames, points,

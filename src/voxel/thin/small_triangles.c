@@ -202,7 +202,7 @@ static inline double offset_of(const vxm_lattice *lattice, const small *s, const
  * bit for each: one end is the voxel in the middle, which is not set. False, and nothing is kept, where it is
  * not known which links these are.
  */
-static bool keep_links(vxm_link_frame *frames, size_t triangle, const small *s, unsigned lines) {
+static bool keep_links(vxm_link_frame *frames, const small *s, unsigned lines) {
   const vxm_thin_job *job = frames[0].job;
   const small_plane plane = plane_of(s);
   int64_t lower[3][3];
@@ -227,7 +227,6 @@ static bool keep_links(vxm_link_frame *frames, size_t triangle, const small *s, 
   for (int axis = 0; axis < 3; axis++) {
     if (!(empty >> axis & 1))
       continue;
-    frames[axis].triangle = triangle;
     frames[axis].surface = &surface;
     vxm_keep_link(&frames[axis], lower[axis],
                   offset_of(&job->placed->lattice, s, &plane, axis, lower[axis][axis] + 1));
@@ -264,7 +263,7 @@ static bool meet_small(vxm_link_frame *frames, size_t triangle, uint64_t differ)
       lines |= line >= 0 ? 1U << line : 0;
     }
   /* Of two lines that a section crosses the one told is such that the other sections tell all others. */
-  if (lines != 0 && !keep_links(frames, triangle, &s, lines))
+  if (lines != 0 && !keep_links(frames, &s, lines))
     vxm_meet_links(frames, triangle, differ, NULL);
   return true;
 }
@@ -277,12 +276,11 @@ static void meet_one(vxm_link_frame *frames, size_t triangle) {
   if (vxm_role_of(triangles, triangle) != VXM_ROLE_FACE)
     return;
   uint64_t differ = (cells[corner[0]] ^ cells[corner[1]]) | (cells[corner[0]] ^ cells[corner[2]]);
-  bool is_polygon = triangles->polygon && triangles->polygon[triangle];
   if (differ == 0) {
     vxm_meet_cube(frames[0].meetings, job, triangle);
     return;
   }
-  if (!is_polygon && meet_small(frames, triangle, differ))
+  if (meet_small(frames, triangle, differ))
     return;
   vxm_meet_sections(frames, triangle, differ);
 }

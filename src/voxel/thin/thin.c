@@ -254,7 +254,7 @@ vxm_status vxm_thin_add(vxm_thin_adder *thin, const vxm_window *window, int64_t 
                         const vxm_triangle_set *triangles, const vxm_snapped_points *placed, int separating,
                         uint8_t *confidence, bool *too_many, vxm_error *error) {
   vxm_thin_job job = {.triangles = triangles,
-                      .corners = vxm_pieces_of(triangles),
+                      .corners = (const uint32_t(*)[3])triangles->corners,
                       .placed = placed,
                       .view = vxm_view_of(window),
                       .counted = {begin, end},
@@ -273,7 +273,7 @@ vxm_status vxm_thin_find(vxm_thin_adder *thin, vxm_voxel_set *added, const vxm_s
                          int64_t end, const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                          int separating, bool *too_many, vxm_error *error) {
   vxm_thin_job job = {.triangles = triangles,
-                      .corners = vxm_pieces_of(triangles),
+                      .corners = (const uint32_t(*)[3])triangles->corners,
                       .placed = placed,
                       .view = vxm_view_of_octree(solid),
                       .counted = {begin, end},

@@ -15,7 +15,7 @@ enum { VXM_MIDDLES = 4 };
 /** What all threads look at. */
 typedef struct vxm_thin_job {
   const vxm_triangle_set *triangles;
-  const uint32_t (*corners)[3]; /**< vxm_pieces_of them */
+  const uint32_t (*corners)[3]; /**< of them */
   const vxm_snapped_points *placed;
   const uint32_t *order; /**< NULL, or the triangles that are looked at, for vxm_sieve_of alone */
   size_t order_count;
