@@ -7,6 +7,7 @@
 #include "mesh/geometry.h"
 #include "mesh/nonfinite.h"
 #include "mesh/patches.h"
+#include "mesh/quad_diagonal.h"
 #include "mesh/weld.h"
 
 #include <float.h>
@@ -85,7 +86,8 @@ static void add_face(const taking *t, size_t face, face_sums *sums) {
     return;
   if (t->is_extreme)
     add_wide(t, corners, count, sums);
-  vxm_vec3 corner = vxm_vec3_between(vxm_position(t->soup, corners[0]), t->frame.centre, t->frame.scale);
+  const double *apex = vxm_position(t->soup, corners[vxm_polygon_apex(t->soup->positions, corners, count)]);
+  vxm_vec3 corner = vxm_vec3_between(apex, t->frame.centre, t->frame.scale);
   double volume = vxm_polygon_cone(corner, normal);
   if (isfinite(area) && isfinite(volume)) {
     sums->area += area;

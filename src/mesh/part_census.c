@@ -5,6 +5,7 @@
 #include "mesh/edges.h"
 #include "mesh/geometry.h"
 #include "mesh/nonfinite.h"
+#include "mesh/quad_diagonal.h"
 #include "mesh/weld.h"
 
 #include <math.h>
@@ -43,7 +44,8 @@ static void add_face(measuring *m, const vxm_unit_scale *frame, size_t face) {
   if (count == 0)
     return;
   vxm_vec3 normal = vxm_polygon_area(m->view.positions, corner, count, frame->scale);
-  vxm_vec3 from = vxm_vec3_between(vxm_position(&m->view, corner[0]), frame->centre, frame->scale);
+  const double *apex = vxm_position(&m->view, corner[vxm_polygon_apex(m->view.positions, corner, count)]);
+  vxm_vec3 from = vxm_vec3_between(apex, frame->centre, frame->scale);
   double area = vxm_vec3_length(normal), volume = vxm_polygon_cone(from, normal);
   if (isfinite(area) && isfinite(volume)) {
     state->area += area;

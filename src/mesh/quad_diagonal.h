@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /** Whether a point comes before another one in space: by x, then y, then z. */
 static inline bool vxm_lies_before(const double *p, const double *q) {
@@ -129,6 +130,17 @@ static inline size_t vxm_quad_diagonal(const double *const at[4]) {
   if (!sure)
     return vxm_quad_diagonal_exact(at);
   return inside[0] != inside[1] ? inside[1] : length[1] < length[0];
+}
+
+/** The corner at which all triangles of a polygon meet: of four corners an end of the diagonal; 0 of three,
+ * and of more, which are measured as a fan. */
+static inline size_t vxm_polygon_apex(const double *positions, const uint32_t *corners, size_t count) {
+  const double *at[4];
+  if (count != 4)
+    return 0;
+  for (int k = 0; k < 4; k++)
+    at[k] = positions + 3 * (size_t)corners[k];
+  return vxm_quad_diagonal(at);
 }
 
 #endif

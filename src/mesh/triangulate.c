@@ -372,13 +372,6 @@ static void fan(vxm_triangulator *tri, const uint32_t *corners, size_t n, size_t
            3 * sizeof *corners);
 }
 
-static size_t quad_diagonal(const double *positions, const uint32_t *corners) {
-  const double *at[4];
-  for (int k = 0; k < 4; k++)
-    at[k] = positions + 3 * (size_t)corners[k];
-  return vxm_quad_diagonal(at);
-}
-
 vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const uint32_t *corners, size_t n,
                            const uint32_t **triangles, vxm_error *error) {
   vxm_status status = reserve(tri, n, error);
@@ -387,7 +380,7 @@ vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const
   *triangles = tri->triangles;
   double scale = n > 4 ? scale_of(positions, corners, n) : 0;
   if (scale == 0) {
-    fan(tri, corners, n, n == 4 ? quad_diagonal(positions, corners) : 0);
+    fan(tri, corners, n, vxm_polygon_apex(positions, corners, n));
     return VXM_OK;
   }
   project(tri, positions, corners, n, scale);

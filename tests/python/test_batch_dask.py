@@ -17,7 +17,7 @@ import voxmend.batch
 from batch_lib import make_dataset, outputs
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-OPTIONS = ["-r", "192", "--thin", "26"]  # some 60 ms each
+OPTIONS = ["-r", "256", "--thin", "26"]  # some 0.1 s each
 SHARDS = 3
 
 
@@ -186,7 +186,7 @@ class Dask(unittest.TestCase):
                 distributed.Client(cluster) as client:
             with self.assertRaisesRegex(voxmend.ArgumentError, "unknown option --nonsense"):
                 voxmend.batch.run(self.at("in"), self.at("none"), dask=client, options=["--nonsense"])
-            with self.assertRaisesRegex(voxmend.batch.BatchError, "resolution=192.*resolution=193"):
+            with self.assertRaisesRegex(voxmend.batch.BatchError, "resolution=256.*resolution=193"):
                 voxmend.batch.run(self.at("in"), self.at("local"), dask=client, options="-r 193 --thin 26", tell=told.append)
 
 
