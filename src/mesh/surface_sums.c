@@ -2,7 +2,6 @@
 #include "mesh/surface_sums.h"
 
 #include "base/threads.h"
-#include "mesh/quad_diagonal.h"
 
 #include <stdatomic.h>
 
@@ -45,8 +44,7 @@ static bool measure_polygon(const summing *s, share *face, const uint32_t *corne
   double fan = vxm_polygon_fan_area(positions, corner, count, s->scale);
   face->vector_area = vxm_polygon_area(positions, corner, count, s->scale);
   face->area = vxm_vec3_length(face->vector_area);
-  face->volume = cone_of(s, positions + 3 * (size_t)corner[vxm_polygon_apex(positions, corner, count)],
-                         face->vector_area, fan);
+  face->volume = cone_of(s, positions + 3 * (size_t)corner[0], face->vector_area, fan);
   return fan > s->no_area;
 }
 

@@ -131,6 +131,8 @@ static void add_report(vxm_repair_report *sum, const vxm_repair_report *one) {
   sum->unparted_vertices += one->unparted_vertices;
   sum->shared_faces += one->shared_faces;
   sum->lost_parts += one->lost_parts;
+  sum->opened_parts += one->opened_parts;
+  sum->emptied_parts += one->emptied_parts;
   sum->sheets += one->sheets;
 }
 
