@@ -60,7 +60,7 @@ END
 for more in '' --no-repair; do # boxes that share a wall
   run "voxmend voxelize pair.obj -o pair.npy --voxel-size 0.25 --fit tight --labels group $more && grep -A1 name pair.npy.json"
 done
-run 'voxmend view pair.obj -o pair.html --labels group -r 12 && voxmend view pair.obj -o pair.png --labels group -r 12 -q'
+run 'voxmend view pair.obj -o pair.html --labels group -r 12'
 run 'voxmend voxelize in/sphere.off -o l.npy -r 24x20x22 --fit tight --labels part -q && voxmend convert l.npy -o l.binvox'
 run 'voxmend convert l.binvox -o l2.npy -q && voxmend convert l2.npy -o l3.binvox -q && cmp l3.binvox l.binvox && cmp l2.npy.json l.npy.json'
 run 'voxmend convert l.npy -o l.rle'

@@ -140,8 +140,8 @@ static void check(const vxm_soup *soup, double half) {
   vxm_soup *inside_out = reversed(soup);
   for (int single = 0; single < 2; single++)
     for (int level = VXM_LEVEL_MANIFOLD; level <= VXM_LEVEL_CLOSED; level++) {
-      check_level(soup, soup, level, single, half);
-      check_level(inside_out, soup, level, single, half);
+      check_level(soup, soup, (vxm_level)level, single, half);
+      check_level(inside_out, soup, (vxm_level)level, single, half);
     }
   vxm_soup_destroy(inside_out);
 }
@@ -239,7 +239,7 @@ static void cavities_that_touch(void **state) {
   (void)state;
   vxm_rng rng = {4};
   for (int round = 0; round < ROUNDS(140); round++) {
-    vxm_soup *soup = random_touching(round % KINDS, &rng);
+    vxm_soup *soup = random_touching((touching)(round % KINDS), &rng);
     assert_true(volume_of(soup) > 0);
     check(soup, 10);
     vxm_soup_destroy(soup);
@@ -331,7 +331,7 @@ static void overlapping_blocks(void **state) {
      */
     if (count_of(&report, "orientation") == 0) {
       for (int level = VXM_LEVEL_MANIFOLD; level <= VXM_LEVEL_CLOSED; level++)
-        check_level(clean, clean, level, round % 2 == 0, n);
+        check_level(clean, clean, (vxm_level)level, round % 2 == 0, n);
       checked++;
     }
     vxm_soup_destroy(clean);

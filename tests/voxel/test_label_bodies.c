@@ -108,7 +108,7 @@ static void check_values(const block *b, const uint16_t *values, const vxm_space
 static void check_block(const block *b, const drawing *how, vxm_label_by by, bool repairs, int scale) {
   vxm_soup *soup = draw(b, how);
   vxm_mesh *apart, *prepared = NULL;
-  vxm_model *model;
+  vxm_model *model = NULL;
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_label_options labels = VXM_LABEL_OPTIONS_INIT;
   vxm_space space = {.origin = {0, 0, 0}};
