@@ -42,7 +42,7 @@ MODELS = [
 ]
 POINTS = 200000
 FAR = 1.5  # voxels
-PEER_SECONDS = 20
+PEER_SECONDS = 5
 
 
 def share_far(at, grid):
