@@ -65,9 +65,8 @@ typedef struct located {
 
 static int lower_position_first(const void *a, const void *b) {
   const located *p = a, *q = b;
-  for (int axis = 0; axis < 3; axis++)
-    if (p->at[axis] != q->at[axis])
-      return p->at[axis] < q->at[axis] ? -1 : 1;
+  if (vxm_lies_before(p->at, q->at) || vxm_lies_before(q->at, p->at))
+    return vxm_lies_before(p->at, q->at) ? -1 : 1;
   return p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
 }
 

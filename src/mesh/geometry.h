@@ -87,4 +87,12 @@ static inline double vxm_polygon_cone(vxm_vec3 corner, vxm_vec3 area) {
   return vxm_vec3_dot(corner, area) / 3.0;
 }
 
+/** Whether a point comes before another one in space: by x, then y, then z. */
+static inline bool vxm_lies_before(const double *p, const double *q) {
+  for (int a = 0; a < 3; a++)
+    if (p[a] != q[a])
+      return p[a] < q[a];
+  return false;
+}
+
 #endif

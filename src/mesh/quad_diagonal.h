@@ -8,20 +8,13 @@
 #ifndef VXM_MESH_QUAD_DIAGONAL_H
 #define VXM_MESH_QUAD_DIAGONAL_H
 
+#include "mesh/geometry.h"
 #include "mesh/orient2d.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-/** Whether a point comes before another one in space: by x, then y, then z. */
-static inline bool vxm_lies_before(const double *p, const double *q) {
-  for (int a = 0; a < 3; a++)
-    if (p[a] != q[a])
-      return p[a] < q[a];
-  return false;
-}
 
 /** A power of two that brings coordinates near 1 if the largest of them needs it, so that products neither
  * overflow nor vanish; 0 if that is not finite. */

@@ -86,6 +86,15 @@ vxm_status vxm_soup_add_vertex(vxm_soup *soup, double x, double y, double z, vxm
   return VXM_OK;
 }
 
+vxm_status vxm_soup_add_vertices(vxm_soup *soup, const vxm_soup *from, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  for (size_t v = 0; v < from->vertex_count && status == VXM_OK; v++) {
+    const double *p = vxm_position(from, v);
+    status = vxm_soup_add_vertex(soup, p[0], p[1], p[2], error);
+  }
+  return status;
+}
+
 vxm_status vxm_soup_add_face(vxm_soup *soup, const uint32_t *corners, size_t count, vxm_error *error) {
   if (soup->face_count == soup->face_capacity || count > soup->corner_capacity - soup->corner_count) {
     vxm_status status = vxm_soup_reserve(soup, 0, soup->face_count + 1, soup->corner_count + count, error);

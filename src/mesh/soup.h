@@ -60,6 +60,8 @@ vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error)
 vxm_status vxm_soup_reserve(vxm_soup *soup, size_t vertices, size_t faces, size_t corners, vxm_error *error);
 /** Adds a vertex; VXM_ERROR_RANGE beyond VXM_VERTICES_MAX. */
 vxm_status vxm_soup_add_vertex(vxm_soup *soup, double x, double y, double z, vxm_error *error);
+/** Adds all vertices of another soup, in their order. @return as vxm_soup_add_vertex */
+vxm_status vxm_soup_add_vertices(vxm_soup *soup, const vxm_soup *from, vxm_error *error);
 /** Adds a face; the corners must exist by the time the soup is finished. */
 vxm_status vxm_soup_add_face(vxm_soup *soup, const uint32_t *corners, size_t count, vxm_error *error);
 /** Adds a tag name (copied) and gives its number. */

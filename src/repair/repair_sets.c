@@ -94,10 +94,8 @@ static vxm_status put_set(work *w, size_t set, const vxm_soup *piece, bool turne
   if (status == VXM_OK)
     status = vxm_grow(w->context, (void **)&out->face_sets, &w->set_room, faces, sizeof *out->face_sets,
                       &w->error);
-  for (size_t v = 0; v < piece->vertex_count && status == VXM_OK; v++) {
-    const double *p = vxm_position(piece, v);
-    status = vxm_soup_add_vertex(out, p[0], p[1], p[2], &w->error);
-  }
+  if (status == VXM_OK)
+    status = vxm_soup_add_vertices(out, piece, &w->error);
   for (size_t f = 0; f < piece->face_count && status == VXM_OK; f++) {
     /* what was made anew may have no tag */
     uint32_t tag = piece->face_tags && piece->face_tags[f] < w->tag_count ? piece->face_tags[f] : 0;

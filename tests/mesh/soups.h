@@ -24,6 +24,17 @@ static inline vxm_context *context_of_threads(int threads) {
   return context;
 }
 
+/** For cmocka_run_group_tests: the state of every test is a context. */
+static inline int make_context(void **state) {
+  *state = context_of_threads(2);
+  return 0;
+}
+
+static inline int drop_context(void **state) {
+  vxm_context_destroy(*state);
+  return 0;
+}
+
 static inline vxm_soup *new_soup(vxm_context *context) {
   vxm_soup *soup;
   assert_int_equal(vxm_soup_create(&soup, context, "arrays", NULL), VXM_OK);

@@ -8,17 +8,6 @@
 #include "mesh/weld.h"
 #include "repair/repair.h"
 
-/** For cmocka_run_group_tests: the state of every test is a context. */
-static inline int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static inline int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 static inline int64_t count_of(const vxm_repair_report *report, const char *pass) {
   for (int i = 0; i < report->pass_count; i++)
     if (strcmp(report->passes[i].pass, pass) == 0)

@@ -225,16 +225,6 @@ static void patches_stay_together(void **state) {
   vxm_soup_destroy(soup);
 }
 
-static int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(solids_stay),
                                      cmocka_unit_test(solids_stay_in_triangles),

@@ -184,16 +184,6 @@ static void a_core_of_an_open_block_stays(void **state) {
   }
 }
 
-static int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(voids_stay),
                                      cmocka_unit_test(voids_stay_in_triangles),

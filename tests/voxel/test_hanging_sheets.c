@@ -215,16 +215,6 @@ static void flaps_do_nothing_to_a_box_with_a_hole(void **state) {
   assert_flaps_do_nothing(*state, FLAPS, 2, true);
 }
 
-static int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(fins_do_nothing), cmocka_unit_test(flaps_do_nothing),
                                      cmocka_unit_test(flaps_do_nothing_to_a_box_with_a_hole)};

@@ -100,10 +100,8 @@ static vxm_status append(vxm_soup *rest, uint64_t **origin, const vxm_soup *wrap
   uint64_t *grown = vxm_realloc(rest->context, *origin, faces, sizeof *grown, &local);
   if (grown)
     *origin = grown;
-  for (size_t v = 0; v < wrap->vertex_count && local.code == VXM_OK; v++) {
-    const double *p = vxm_position(wrap, v);
-    vxm_soup_add_vertex(rest, p[0], p[1], p[2], &local);
-  }
+  if (local.code == VXM_OK)
+    vxm_soup_add_vertices(rest, wrap, &local);
   for (size_t f = 0; f < wrap->face_count && local.code == VXM_OK; f++) {
     uint32_t corners[3];
     for (int i = 0; i < 3; i++)

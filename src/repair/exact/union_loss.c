@@ -31,10 +31,8 @@ static vxm_status append(vxm_soup *to, const vxm_soup *from, const uint32_t *lab
   size_t first = to->vertex_count;
   vxm_status status =
       vxm_soup_reserve(to, first + from->vertex_count, to->face_count, to->corner_count, error);
-  for (size_t v = 0; v < from->vertex_count && status == VXM_OK; v++) {
-    const double *p = vxm_position(from, v);
-    status = vxm_soup_add_vertex(to, p[0], p[1], p[2], error);
-  }
+  if (status == VXM_OK)
+    status = vxm_soup_add_vertices(to, from, error);
   for (size_t f = 0; f < from->face_count && status == VXM_OK; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(from, f, &count);
@@ -54,22 +52,19 @@ static vxm_status find_rest(vxm_soup *rest, const vxm_soup *before, const vxm_so
   vxm_extent extent;
   vxm_error local = VXM_ERROR_INIT;
   size_t count;
-  uint8_t *used = vxm_alloc(before->context, before->vertex_count, sizeof *used, &local);
-  uint32_t *label = used ? vxm_alloc(before->context, before->face_count, sizeof *label, &local) : NULL;
+  uint32_t *label = vxm_alloc(before->context, before->face_count, sizeof *label, &local);
   vxm_status status =
       label ? vxm_components(before->context, before, NULL, label, &count, &local) : local.code;
   component *components = NULL;
   if (status == VXM_OK)
     components = vxm_calloc(before->context, count, sizeof *components, &local);
-  if (components) {
-    vxm_extent_of(&extent, before->context, before, used);
+  if (components && vxm_extent_find(&extent, before->context, before, &local) == VXM_OK) {
     measure(components, before, label, vxm_unit_scale_of(extent.bounds).scale);
     if (append(rest, united, NULL, NULL, &local) == VXM_OK)
       append(rest, before, label, components, &local);
   }
   vxm_free(before->context, components);
   vxm_free(before->context, label);
-  vxm_free(before->context, used);
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
   return local.code;

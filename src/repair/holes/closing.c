@@ -28,10 +28,8 @@ static vxm_status add_sheets(vxm_soup *filled, uint64_t **origin, const vxm_repa
   vxm_status status = local.code;
   if (grown)
     *origin = grown;
-  for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
-    const double *p = vxm_position(soup, v);
-    status = vxm_soup_add_vertex(filled, p[0], p[1], p[2], &local);
-  }
+  if (status == VXM_OK)
+    status = vxm_soup_add_vertices(filled, soup, &local);
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
