@@ -66,8 +66,9 @@ __kernel void touch(__global const uint *flips, __global const Box *boxes, __glo
     found = 0;
   barrier(CLK_LOCAL_MEM_FENCE);
   uint first = box.first[0] >> 5, words = (box.last[0] + 31) / 32 - first;
-  uint high = box.last[1] - box.first[1], all_words = words * high * (end - begin), any_bit = 0;
-  for (uint i = (uint)get_local_id(0); i < all_words && any_bit == 0; i += GROUP) {
+  uint high = box.last[1] - box.first[1], all_words = words * high * (end - begin);
+  /* Until any of the group finds one: where flips lie, most work-items may have none on their way. */
+  for (uint i = (uint)get_local_id(0); i < all_words && atomic_or(&found, 0u) == 0; i += GROUP) {
     uint row = i / words, w = first + i % words;
     uint slice = begin - tile.z + row / high, at = box.first[1] + row % high;
     uint bits = flips[(slice * rows + at) * (box.row_bits / 32) + w];
@@ -75,10 +76,9 @@ __kernel void touch(__global const uint *flips, __global const Box *boxes, __glo
       bits &= ~0u << (box.first[0] & 31u);
     if (w == (box.last[0] - 1) >> 5 && (box.last[0] & 31u) != 0)
       bits &= (1u << (box.last[0] & 31u)) - 1;
-    any_bit |= bits;
+    if (bits != 0)
+      atomic_or(&found, 1u);
   }
-  if (any_bit != 0)
-    atomic_or(&found, 1u);
   barrier(CLK_LOCAL_MEM_FENCE);
   if (get_local_id(0) == 0 && found != 0)
     touched[box.part] = 1;

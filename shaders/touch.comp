@@ -31,8 +31,8 @@ void main() {
   barrier();
   uint first = box.first[0] >> 5, words = (box.last[0] + 31u) / 32u - first;
   uint high = box.last[1] - box.first[1], deep = end - begin, all_words = words * high * deep;
-  uint any_bit = 0u;
-  for (uint i = gl_LocalInvocationIndex; i < all_words && any_bit == 0u; i += 64u) {
+  /* Until any of the group finds one: where flips lie, most invocations may have none on their way. */
+  for (uint i = gl_LocalInvocationIndex; i < all_words && atomicOr(found, 0u) == 0u; i += 64u) {
     uint row = i / words, w = first + i % words;
     uint slice = begin - tile.z + row / high, at = box.first[1] + row % high;
     uint bits = flips.word[(slice * rows + at) * (box.row_bits / 32u) + w];
@@ -40,10 +40,9 @@ void main() {
       bits &= ~0u << (box.first[0] & 31u);
     if (w == (box.last[0] - 1u) >> 5 && (box.last[0] & 31u) != 0u)
       bits &= (1u << (box.last[0] & 31u)) - 1u;
-    any_bit |= bits;
+    if (bits != 0u)
+      atomicOr(found, 1u);
   }
-  if (any_bit != 0u)
-    atomicOr(found, 1u);
   barrier();
   if (gl_LocalInvocationIndex == 0u && found != 0u)
     parts.touched[box.part] = 1u;

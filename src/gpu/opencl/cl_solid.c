@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-/** What is done triangle by triangle, unless that is asked for (doc/engines.md has the times). */
+/** What devices in software do triangle by triangle, unless that is asked for; GPUs are faster by tiles of
+ * columns always (doc/engines.md has the times). */
 enum {
   PASSES_MOST = 4,   /**< so few passes */
   LONG_COLUMN = 1024 /**< columns of fewer voxels */
@@ -70,7 +71,8 @@ vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool i
 static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job,
                          vxm_disjoint_passes *passes, vxm_error *error) {
   vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
-  if (method == VXM_CL_TILES || (method == VXM_CL_AUTO && window->fast_dim >= LONG_COLUMN))
+  bool is_better = engine->base.info.hardware || window->fast_dim >= LONG_COLUMN;
+  if (method == VXM_CL_TILES || (method == VXM_CL_AUTO && is_better))
     return VXM_OK;
   return vxm_device_cache_passes(passes, &engine->device_cache, window, job, 0,
                                  method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX, error);

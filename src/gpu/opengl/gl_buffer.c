@@ -49,14 +49,30 @@ vxm_status vxm_gl_reserve_zero(vxm_opengl *engine, vxm_gl_buffer_id id, size_t b
   return status;
 }
 
+GLuint vxm_gl_send_begin(const vxm_gl *gl, const void *data, size_t bytes) {
+  GLuint sent = 0;
+  gl->GenBuffers(1, &sent);
+  gl->BindBuffer(GL_COPY_READ_BUFFER, sent);
+  gl->BufferData(GL_COPY_READ_BUFFER, (GLsizeiptr)bytes, data, GL_STREAM_DRAW);
+  return sent;
+}
+
+void vxm_gl_send_end(vxm_opengl *engine, GLuint sent, vxm_gl_buffer_id id, size_t offset, size_t bytes) {
+  const vxm_gl *gl = &engine->context.gl;
+  gl->BindBuffer(GL_COPY_READ_BUFFER, sent);
+  gl->BindBuffer(target, engine->buffers[id].name);
+  gl->CopyBufferSubData(GL_COPY_READ_BUFFER, target, 0, (GLintptr)offset, (GLsizeiptr)bytes);
+  gl->DeleteBuffers(1, &sent); /* once it is copied */
+}
+
 static vxm_status upload_at(vxm_opengl *engine, vxm_gl_buffer_id id, size_t offset, const void *data,
                             size_t bytes, vxm_error *error) {
   vxm_status status = vxm_gl_reserve(engine, id, offset + bytes, error);
   if (status != VXM_OK || bytes == 0 || !data)
     return status;
-  engine->context.gl.BindBuffer(target, engine->buffers[id].name);
-  engine->context.gl.BufferSubData(target, (GLintptr)offset, (GLsizeiptr)bytes, data);
-  return VXM_OK;
+  GLuint sent = vxm_gl_send_begin(&engine->context.gl, data, bytes);
+  vxm_gl_send_end(engine, sent, id, offset, bytes);
+  return vxm_gl_check(&engine->context.gl, "opengl: sending a buffer", error);
 }
 
 vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *data, size_t bytes,

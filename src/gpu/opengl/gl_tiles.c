@@ -43,11 +43,13 @@ vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm
   vxm_status status = vxm_gl_reserve(engine, id, tile->words * sizeof(uint64_t), error);
   if (status != VXM_OK)
     return status;
-  gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[id].name);
+  size_t all = (size_t)(tile->end - tile->begin) * bytes;
+  GLuint sent = vxm_gl_send_begin(gl, NULL, all);
   for (int64_t k = tile->begin; k < tile->end; k++)
-    gl->BufferSubData(GL_COPY_WRITE_BUFFER, (GLintptr)((size_t)(k - tile->begin) * bytes), (GLsizeiptr)bytes,
+    gl->BufferSubData(GL_COPY_READ_BUFFER, (GLintptr)((size_t)(k - tile->begin) * bytes), (GLsizeiptr)bytes,
                       vxm_slice_job_slice_at(tile, tile->window->words, k));
-  return VXM_OK;
+  vxm_gl_send_end(engine, sent, id, 0, all);
+  return vxm_gl_check(gl, "opengl: sending voxels", error);
 }
 
 vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error) {

@@ -135,6 +135,12 @@ void vxm_gl_release(vxm_opengl *engine, vxm_gl_buffer_id id);
 /** Room, and these bytes in it. */
 vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *data, size_t bytes,
                          vxm_error *error);
+/** Bytes in a buffer of their own (`data` or, where that is NULL, what BufferSubData then puts into
+ * GL_COPY_READ_BUFFER), and their copy into a buffer of the engine. The copy keeps its place among what is
+ * drawn. BufferSubData into the engine's buffer does not with NVIDIA's driver (580): it can overtake draws
+ * whose shaders, or whose indirect parameters, still read the buffer, whatever barriers stand between. */
+GLuint vxm_gl_send_begin(const vxm_gl *gl, const void *data, size_t bytes);
+void vxm_gl_send_end(vxm_opengl *engine, GLuint sent, vxm_gl_buffer_id id, size_t offset, size_t bytes);
 /** How buffers of the engine's device cache are filled and freed. */
 vxm_status vxm_gl_device_cache_upload(vxm_engine *engine, vxm_device_cache_id id, size_t offset,
                                       const void *data, size_t bytes, vxm_error *error);
