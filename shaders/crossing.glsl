@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * What a triangle flips in the columns of a tile, by rules.h: in the integers of the CPU. Differences are at most 2^20
+ * What a triangle flips in the columns of a slab, by rules.h: in the integers of the CPU. Differences are at most 2^20
  * and a voxel at most 2^16 steps, so that all products fit 63 bits.
  */
 struct Triangle {
@@ -31,7 +31,7 @@ int crossing(Triangle t, ivec2 p) {
   return plane.base + vxm_round_down(plane.across, plane.step, quotient);
 }
 
-/* Flips what the triangle flips in a column of the tile. */
+/* Flips what the triangle flips in a column of the slab. */
 void flip_column(Triangle t, ivec2 column) {
   int unit = 1 << job.axes.w;
   ivec2 p = column * unit + unit / 2 - t.a.xy;
@@ -50,7 +50,7 @@ ivec2 first_centre(ivec2 at) {
   return ivec2(vxm_first_centre(at.x, unit, job.axes.w), vxm_first_centre(at.y, unit, job.axes.w));
 }
 
-/* The columns of the tile among which are all that the triangle covers. */
+/* The columns of the slab among which are all that the triangle covers. */
 bool columns_of(Triangle t, out ivec2 begin, out ivec2 end) {
   ivec2 b = ivec2(t.d.bu, t.d.bv), c = ivec2(t.d.cu, t.d.cv);
   ivec2 low = min(min(b, c), ivec2(0)) + t.a.xy, high = max(max(b, c), ivec2(0)) + t.a.xy;

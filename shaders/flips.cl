@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Flips of a tile: a bit for each voxel. */
+/* Flips of a slab: a bit for each voxel. */
 typedef __global uint Flips;
 
 static inline void flip_bit(Flips *flips, const Job *job, int u, int v, int w) {

@@ -56,12 +56,12 @@ typedef struct Box {
 } Box;
 
 /* Which parts set a voxel: those with a flip in their box, where each work-group looks. Boxes of one pass do not
-   overlap. `tile`: first box, boxes; first slice, slice behind the last. */
-__kernel void touch(__global const uint *flips, __global const Box *boxes, __global uint *touched, const uint4 tile,
+   overlap. `slab`: first box, boxes; first slice, slice behind the last. */
+__kernel void touch(__global const uint *flips, __global const Box *boxes, __global uint *touched, const uint4 slab,
                     const uint rows) {
   __local uint found;
-  Box box = boxes[tile.x + (uint)get_group_id(0)];
-  uint begin = max(box.first[2], tile.z), end = max(min(box.last[2], tile.w), begin);
+  Box box = boxes[slab.x + (uint)get_group_id(0)];
+  uint begin = max(box.first[2], slab.z), end = max(min(box.last[2], slab.w), begin);
   if (get_local_id(0) == 0)
     found = 0;
   barrier(CLK_LOCAL_MEM_FENCE);
@@ -70,7 +70,7 @@ __kernel void touch(__global const uint *flips, __global const Box *boxes, __glo
   /* Until any of the group finds one: where flips lie, most work-items may have none on their way. */
   for (uint i = (uint)get_local_id(0); i < all_words && atomic_or(&found, 0u) == 0; i += GROUP) {
     uint row = i / words, w = first + i % words;
-    uint slice = begin - tile.z + row / high, at = box.first[1] + row % high;
+    uint slice = begin - slab.z + row / high, at = box.first[1] + row % high;
     uint bits = flips[(slice * rows + at) * (box.row_bits / 32) + w];
     if (w == first)
       bits &= ~0u << (box.first[0] & 31u);

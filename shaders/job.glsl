@@ -2,7 +2,7 @@
 /* What one pass over the triangles works on. Axes are named u and v across the columns, and w along them. */
 layout(std140, binding = 0) uniform Job {
   ivec4 axes;    // u, v, w as numbers of axes; bits of the lattice below a voxel
-  ivec4 first;   // first voxel of the tile along u, v, w; whether flips before it along w count for it
+  ivec4 first;   // first voxel of the slab along u, v, w; whether flips before it along w count for it
   ivec4 last;    // voxel behind the last one along u, v, w
   uvec4 step;    // bits from a voxel to the next one along u, v, w
   uvec4 triangles;  // first number; how many; whether numbers are looked up in `order`; most columns that the first

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What one pass over the triangles of a tile works on: vxm_slice_job_columns. Axes are named u and v across the columns,
+/* What one pass over the triangles of a slab works on: vxm_slab_columns. Axes are named u and v across the columns,
    and w along them; 64-bit integers hold all products, as differences of near triangles are at most 2^20. */
 typedef struct Job {
   int axes[3], bits;         /* numbers of u, v, w; bits of the lattice below a voxel */
@@ -51,7 +51,7 @@ static inline int crossing(const vxm_plane *plane, long across) {
   return plane->base + vxm_round_down(across, plane->step, quotient);
 }
 
-/* The columns of the tile among which are all that the triangle covers: u in x and z, v in y and w; none if z <= x or
+/* The columns of the slab among which are all that the triangle covers: u in x and z, v in y and w; none if z <= x or
    w <= y. */
 static inline int4 columns_of(const Triangle *t, const Job *job) {
   int u0 = t->a.x + min(min(t->d.bu, t->d.cu), 0), u1 = t->a.x + max(max(t->d.bu, t->d.cu), 0);

@@ -11,7 +11,7 @@ layout(std430, binding = 3) buffer Bits {
 } bits;
 layout(location = 0) uniform uvec4 shape;     // words; words of a row; rows of a slice; voxels along a row
 layout(location = 1) uniform uvec4 places;    // which of u, v, w bits, rows and slices run along
-layout(location = 2) uniform ivec4 first;     // what comes before the texture along u, v, w, in voxels of the tile
+layout(location = 2) uniform ivec4 first;     // what comes before the texture along u, v, w, in voxels of the slab
 layout(location = 3) uniform ivec4 size;      // of the texture
 
 void main() {

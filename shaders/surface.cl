@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The voxels of surfaces in a tile. */
+/* The voxels of surfaces in a slab. */
 static inline void set_voxel(const Voxels *voxels, const Shape *t, const SurfaceJob *job, int u, int v, int w) {
   uint bit = (uint)(u - t->first.x) * t->step.x + (uint)(v - t->first.y) * t->step.y +
              (uint)(w - t->first.z) * t->step.z;

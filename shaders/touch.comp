@@ -15,17 +15,17 @@ layout(std430, binding = 4) readonly buffer Boxes {
 layout(std430, binding = 5) writeonly buffer Touched {
   uint touched[];
 } parts;
-layout(location = 0) uniform uvec4 tile; // first box, boxes; first slice, slice behind the last
+layout(location = 0) uniform uvec4 slab; // first box, boxes; first slice, slice behind the last
 layout(location = 1) uniform uint rows;  // of a slice
 
 shared uint found;
 
 void main() {
   uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  if (b >= tile.y)
+  if (b >= slab.y)
     return;
-  Box box = boxes.box[tile.x + b];
-  uint begin = max(box.first[2], tile.z), end = max(min(box.last[2], tile.w), begin);
+  Box box = boxes.box[slab.x + b];
+  uint begin = max(box.first[2], slab.z), end = max(min(box.last[2], slab.w), begin);
   if (gl_LocalInvocationIndex == 0u)
     found = 0u;
   barrier();
@@ -34,7 +34,7 @@ void main() {
   /* Until any of the group finds one: where flips lie, most invocations may have none on their way. */
   for (uint i = gl_LocalInvocationIndex; i < all_words && atomicOr(found, 0u) == 0u; i += 64u) {
     uint row = i / words, w = first + i % words;
-    uint slice = begin - tile.z + row / high, at = box.first[1] + row % high;
+    uint slice = begin - slab.z + row / high, at = box.first[1] + row % high;
     uint bits = flips.word[(slice * rows + at) * (box.row_bits / 32u) + w];
     if (w == first)
       bits &= ~0u << (box.first[0] & 31u);

@@ -4,7 +4,7 @@
  * of the CPU. A triangle is looked at along the axis w that its normal leans to most, so that it has few voxels in each
  * column. Differences are at most 2^20 steps, as is a voxel, so that all sums stay below 5 x 2^60 and fit 63 bits.
  */
-typedef struct SurfaceJob { /* vxm_slice_job_surface */
+typedef struct SurfaceJob { /* vxm_slab_surface */
   int first[3], bits;
   int last[3], thin;
   uint step[4];
@@ -30,8 +30,8 @@ typedef struct Line {
 typedef struct Shape {
   int3 corner[3];
   long3 normal;
-  int3 begin, end; /* voxels whose closed boxes meet that of the triangle, within the tile */
-  int3 first;      /* voxel of the tile */
+  int3 begin, end; /* voxels whose closed boxes meet that of the triangle, within the slab */
+  int3 first;      /* voxel of the slab */
   uint3 step;
   int w; /* number of the axis */
 } Shape;
@@ -43,7 +43,7 @@ static inline int3 turned(int x, int y, int z, int w) {
   return w == 0 ? (int3)(y, z, x) : w == 1 ? (int3)(z, x, y) : (int3)(x, y, z);
 }
 
-/* False if it has no voxel of the tile, or is one of those that the CPU does. */
+/* False if it has no voxel of the slab, or is one of those that the CPU does. */
 static inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points,
                        __global const uint *corners, uint triangle) {
   int4 a = points[corners[3 * triangle]], b = points[corners[3 * triangle + 1]], c = points[corners[3 * triangle + 2]];

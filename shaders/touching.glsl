@@ -5,7 +5,7 @@
  * few voxels in each column. Differences are at most 2^20 and a voxel 2^16 steps, so that all sums fit 63 bits.
  */
 layout(std140, binding = 0) uniform Job {
-  ivec4 first;  // first voxel of the tile along x, y, z; bits of the lattice below a voxel
+  ivec4 first;  // first voxel of the slab along x, y, z; bits of the lattice below a voxel
   ivec4 last;   // voxel behind the last one; whether the surface is thin
   uvec4 step;   // bits from a voxel to the next one along x, y, z
   uvec4 triangles; // how many; most columns that the first pass takes
@@ -26,7 +26,7 @@ struct Triangle {
   ivec3 corner[3]; // x, y, z
   i64vec3 normal;
   int u, v, w;          // axes, w the one looked along
-  ivec3 begin, end;     // voxels whose closed boxes meet that of the triangle, within the tile
+  ivec3 begin, end;     // voxels whose closed boxes meet that of the triangle, within the slab
 };
 
 bool load_triangle(uint triangle, out ivec3 corner[3]) {

@@ -53,7 +53,8 @@ vxm_status vxm_memory_take(vxm_context *context, size_t bytes, vxm_error *error)
 void vxm_memory_give(vxm_context *context, size_t bytes);
 
 /**
- * Makes room for at least `needed` elements in a growing array (doubling), and updates *capacity.
+ * Makes room for at least `needed` elements in a growing array, which grows by a half at least, and updates
+ * *capacity.
  * `*array` is a block of this context or NULL.
  */
 vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,

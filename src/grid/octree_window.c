@@ -78,9 +78,7 @@ static void fill_slices(size_t task, int worker, void *payload) {
   fill_range range = {job, job->first + (int64_t)task * FILL_SLICES, 0};
   range.end = vxm_min(range.begin + FILL_SLICES, window->end);
   range.begin = vxm_max(range.begin, window->begin);
-  for (int64_t s = range.begin; s < range.end; s++)
-    memset(vxm_window_row(window, 0, s), 0,
-           window->row_words * (size_t)window->middle_dim * sizeof *window->words);
+  vxm_window_clear(window, range.begin, range.end);
   vxm_octree_walk_layers(job->sparse, window->layout.slow, range.begin, range.end, fill_piece, &range);
 }
 

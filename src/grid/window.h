@@ -11,6 +11,8 @@
 
 #include "grid/bitgrid.h"
 
+#include <string.h>
+
 /** Which axis of the voxel space (0 = x, 1 = y, 2 = z) bits, rows and slices run along. */
 typedef struct vxm_layout {
   int fast, middle, slow;
@@ -64,6 +66,18 @@ static inline vxm_window vxm_window_of_grid(const vxm_grid *grid) {
 static inline uint64_t *vxm_window_row(const vxm_window *window, int64_t middle, int64_t slow) {
   return window->words + (size_t)(slow - window->begin) * window->slice_words +
          (size_t)middle * window->row_words;
+}
+
+/** What the words of its slices take. */
+static inline size_t vxm_window_bytes(const vxm_window *window) {
+  return window->slice_words * (size_t)(window->end - window->begin) * sizeof(uint64_t);
+}
+
+/** Empties the slices begin..end-1 of the whole space, which the window has. */
+static inline void vxm_window_clear(const vxm_window *window, int64_t begin, int64_t end) {
+  for (int64_t k = begin; k < end; k++)
+    memset(vxm_window_row(window, 0, k), 0,
+           window->row_words * (size_t)window->middle_dim * sizeof *window->words);
 }
 
 /** The valid bits of the last word of a row. */

@@ -29,8 +29,7 @@ vxm_status vxm_gridio_read_sparse(vxm_sparse **out, vxm_context *context, const 
  * Writes a grid; the file appears under its name when it is complete.
  *
  * @param path   "-" is standard output (not raw); format is then needed
- * @param format "binvox", "npy", "raw", "rle", "nrrd", "vdb", or for the surface "obj", "ply", "stl", "off";
- * in any case; NULL = by the extension of `path`
+ * @param format a name of vxm_grid_format_name, in any case; NULL = by the extension of `path`
  * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format, and for binvox with voxels that are not cubes;
  *         VXM_ERROR_IO, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */

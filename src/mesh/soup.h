@@ -56,7 +56,7 @@ void vxm_soup_destroy(vxm_soup *soup);
  * found out; warnings included. */
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
 
-/** Makes room for at least so many elements in all (amortized doubling beyond what is there). */
+/** Makes room for at least so many elements in all (half as many again where it grows). */
 vxm_status vxm_soup_reserve(vxm_soup *soup, size_t vertices, size_t faces, size_t corners, vxm_error *error);
 /** Adds a vertex; VXM_ERROR_RANGE beyond VXM_VERTICES_MAX. */
 vxm_status vxm_soup_add_vertex(vxm_soup *soup, double x, double y, double z, vxm_error *error);

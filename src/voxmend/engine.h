@@ -64,7 +64,8 @@ typedef enum vxm_gl_method {
 
 /** How an engine of OpenCL makes solids; both have the bits of the CPU (Schwarz & Seidel 2010, section 4). */
 typedef enum vxm_cl_method {
-  VXM_CL_AUTO = 0,  /**< by tiles where many parts meet or rows have 1024 voxels, else by triangles */
+  VXM_CL_AUTO =
+      0, /**< by tiles on a GPU, where many parts meet or rows have 1024 voxels, else by triangles */
   VXM_CL_TRIANGLES, /**< a work-item for each triangle, which flips bits by atomic XOR; then a prefix XOR */
   VXM_CL_TILES      /**< triangles sorted by tiles of columns, a work-group for each tile, no atomics */
 } vxm_cl_method;
@@ -73,7 +74,8 @@ typedef enum vxm_cl_method {
 typedef struct vxm_engine_options {
   size_t size;             /**< as the initializer sets it */
   vxm_gl_method gl_method; /**< how OpenGL makes solids */
-  int slice_axis;          /**< across which axis the slicing methods cut: 0 = x, 1 = y, 2 = z */
+  int slice_axis; /**< across which axis the slicing methods cut: 0 = x, 1 = y, 2 = z (pictures count from 1)
+                   */
   double displacement; /**< slicing methods: each vertex is moved at random by up to so many voxels along each
                           axis (Ogayar et al., section III-B1) */
   uint64_t seed;       /**< of these moves */

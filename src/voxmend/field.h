@@ -97,8 +97,9 @@ VXM_API const char *vxm_field_metadata_key(const vxm_field *field, int64_t index
 VXM_API const char *vxm_field_metadata_value(const vxm_field *field, int64_t index);
 
 /**
- * Adds the next label to the table of a field that has just been made, or a pair to its metadata.
+ * Adds the next label to the table of a field that has just been made.
  *
+ * @param name   of the label, copied
  * @param voxels that have the label
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE beyond what a file may say, which is 1 MiB;
  * VXM_ERROR_MEMORY
@@ -313,7 +314,8 @@ VXM_API vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_mode
 
 /* ---- Labels: which part, group or material a voxel belongs to ---- */
 
-/** What faces are labelled by. */
+/** What faces are labelled by. A part here, in colours and in the account of a repair is a connected
+ * component; in vxm_voxelize_report it is what is voxelized by itself, and all open components are one. */
 typedef enum vxm_label_by {
   VXM_LABEL_PART = 0, /**< connected components */
   VXM_LABEL_GROUP,    /**< groups, or parts named in the file: of a face tag what lies before the first '/' */

@@ -148,6 +148,10 @@ VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
  * vertices, and split into triangles. Every edge has two faces: where voxels touch in an edge or a corner
  * alone each side has vertices of its own, 1/256 of a voxel within its own voxels along the axes concerned,
  * so that programs that merge vertices leave them be.
+ *
+ * @param[out] out  owned by the caller (vxm_mesh_destroy)
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE beyond 2^32 - 2 vertices; VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error);
 
@@ -159,7 +163,7 @@ typedef struct vxm_picture_options {
   double azimuth;   /**< degrees about the up axis */
   double elevation; /**< degrees above the horizon */
   int up;           /**< axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
-  int slice_axis;   /**< draw the cross-section along 1 = x, 2 = y or 3 = z; 0 = all */
+  int slice_axis;   /**< draw the cross-section along 1 = x, 2 = y or 3 = z; 0 = all (engines count from 0) */
   double slice;     /**< where: a share of the grid's length along that axis, 0 to 1 */
 } vxm_picture_options;
 

@@ -62,7 +62,8 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
  */
 VXM_API vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error);
 
-/** As vxm_mesh_read, from memory. `name` is used in messages and for its extension. */
+/** As vxm_mesh_read, from memory. `name` is used in messages and for its extension.
+ * @return as vxm_mesh_read */
 VXM_API vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
                                         const char *name, vxm_error *error);
 
@@ -98,7 +99,7 @@ VXM_API vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *contex
                                              size_t size, const char *name,
                                              const vxm_mesh_read_options *options, vxm_error *error);
 
-/** What a mesh looks like that was read with its colours. */
+/** The appearance of a mesh that was read with its colours: which colours, materials and textures it has. */
 typedef struct vxm_look {
   size_t size;        /**< as the initializer sets it, or 0 */
   bool has_colors;    /**< any of what follows is there, textures that cannot be read left out */
@@ -125,7 +126,7 @@ typedef struct vxm_texture {
 #define VXM_TEXTURE_INIT \
   { sizeof(vxm_texture), NULL, 0, 0, NULL }
 
-/** Tells what a mesh looks like; nothing if it was read without `colors`, or is the result of a repair.
+/** Tells the appearance of a mesh; nothing if it was read without `colors`, or is the result of a repair.
  * @return VXM_OK, VXM_ERROR_ARGUMENT */
 VXM_API vxm_status vxm_mesh_look(vxm_look *out, const vxm_mesh *mesh, vxm_error *error);
 /** Tells of one of its textures, from 0 on; of one that is not there, that it is not. @return VXM_OK,

@@ -57,7 +57,7 @@ typedef struct vxm_sampler_options {
   uint32_t noise;   /**< displacements in the circular buffer that all variants read, each from another place;
                        0 = 65536 */
   unsigned mirror;  /**< axes of the model, or-ed 1 (x), 2 (y) and 4 (z), along each of which half of the
-                       variants  are mirrored */
+                       variants are mirrored */
   double translate; /**< moved along each axis by up to this part, 0 to 1, of the room on either side */
   bool fill;        /**< the longest side fills the grid rather than the diagonal; without rotation only */
   const vxm_voxelize_options *voxelize; /**< how, without the confidence; NULL = defaults. It is copied. An

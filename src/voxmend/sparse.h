@@ -118,8 +118,7 @@ typedef void (*vxm_sparse_fn)(const vxm_sparse_piece *piece, void *payload);
 VXM_API void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload);
 
 /** As vxm_grid_write, slice by slice, but for .vdb and .bt, whose trees are made of the octree's pieces; not
- * as a mesh.
- */
+ * as a mesh. @return as vxm_grid_write */
 VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
                                     const vxm_grid_write_options *options, vxm_error *error);
 

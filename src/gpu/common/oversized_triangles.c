@@ -111,28 +111,28 @@ vxm_status vxm_oversized_surface_add(const vxm_oversized_surface *oversized, con
 
 /* ---- What they flip ---- */
 
-/** The columns of a tile, which is one slab. */
-static vxm_columns columns_of(const vxm_slice_job_columns *tile, unsigned roles) {
-  const int32_t *axes = tile->axes;
+/** All columns of a slab as one piece of work. */
+static vxm_columns columns_of(const vxm_slab_columns *slab, unsigned roles) {
+  const int32_t *axes = slab->axes;
   vxm_columns columns = {.u = axes[0],
                          .v = axes[1],
                          .w = axes[2],
-                         .keep_before = tile->keep_before != 0,
+                         .keep_before = slab->keep_before != 0,
                          .slab_axis = axes[1],
                          .slab_shift = 62,
                          .roles = roles};
   for (int i = 0; i < 3; i++) {
-    columns.begin[axes[i]] = tile->first[i];
-    columns.end[axes[i]] = tile->last[i];
-    columns.step[axes[i]] = tile->step[i];
+    columns.begin[axes[i]] = slab->first[i];
+    columns.end[axes[i]] = slab->last[i];
+    columns.step[axes[i]] = slab->step[i];
   }
   return columns;
 }
 
-static size_t words_of(const vxm_slice_job_columns *tile) {
+static size_t words_of(const vxm_slab_columns *slab) {
   uint64_t bits = 0;
   for (int i = 0; i < 3; i++) {
-    uint64_t along = (uint64_t)(tile->last[i] - tile->first[i]) * tile->step[i];
+    uint64_t along = (uint64_t)(slab->last[i] - slab->first[i]) * slab->step[i];
     bits = along > bits ? along : bits;
   }
   return (size_t)(bits + 63) / 64;
@@ -177,15 +177,15 @@ static vxm_status take_all(flips *out, const vxm_crossing_bins *bins, vxm_error 
 }
 
 vxm_status vxm_oversized_flips(uint32_t **out, size_t *count, const vxm_oversized *oversized,
-                               const vxm_slice_job_columns *tile, const vxm_parity_union_job *job,
+                               const vxm_slab_columns *slab, const vxm_parity_union_job *job,
                                const vxm_disjoint_passes *passes, size_t pass, vxm_error *error) {
   flips found = {.context = oversized->context};
   const vxm_triangle_set *triangles = job->triangles;
   vxm_crossing_bins bins = {.context = oversized->context};
-  vxm_columns columns = columns_of(tile, job->roles);
+  vxm_columns columns = columns_of(slab, job->roles);
   vxm_raster_task task = {
       .placed = job->placed, .triangles = triangles, .columns = &columns, .columns_count = 1, .bins = &bins};
-  vxm_status status = vxm_crossing_bins_reset(&bins, 1, 1, 1, words_of(tile), error);
+  vxm_status status = vxm_crossing_bins_reset(&bins, 1, 1, 1, words_of(slab), error);
   for (size_t i = 0; i < oversized->count && status == VXM_OK; i++) {
     size_t f = oversized->triangles[i], part = triangles->part[f];
     if (part < job->part_begin || part >= job->part_end || passes->pass_of[part - passes->part_begin] != pass)

@@ -5,7 +5,7 @@
 #define VXM_GPU_COMMON_OVERSIZED_TRIANGLES_H
 
 #include "gpu/common/disjoint_passes.h"
-#include "gpu/common/slice_job.h"
+#include "gpu/common/slab.h"
 
 /** Oversized triangles. Start from {.context = ...}. */
 typedef struct vxm_oversized {
@@ -32,10 +32,10 @@ void vxm_oversized_surface_destroy(vxm_oversized_surface *oversized);
 /** Points for shaders: 32 bits and, where a point does not fit them, a mark as the fourth number. */
 void vxm_oversized_narrow(int32_t (*out)[4], const vxm_point *points, size_t count);
 
-/** What the oversized triangles of a pass flip: bits of a tile, in a new block. `count` is 0 and the block
+/** What the oversized triangles of a pass flip: bits of a slab, in a new block. `count` is 0 and the block
  * NULL if there are none. */
 vxm_status vxm_oversized_flips(uint32_t **out, size_t *count, const vxm_oversized *oversized,
-                               const vxm_slice_job_columns *tile, const vxm_parity_union_job *job,
+                               const vxm_slab_columns *slab, const vxm_parity_union_job *job,
                                const vxm_disjoint_passes *passes, size_t pass, vxm_error *error);
 /** Adds the oversized triangles of a surface to a window. */
 vxm_status vxm_oversized_surface_add(const vxm_oversized_surface *oversized, const vxm_surface *surface,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Buffers of the device, and tiles on their way to and from it. */
+/** Buffers of the device, and slabs on their way to and from it. */
 #include "base/size_text.h"
 #include "gpu/opencl/opencl.h"
 
@@ -90,10 +90,10 @@ vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offse
                       "reading a buffer", error);
 }
 
-/* ---- Tiles ---- */
+/* ---- Slabs ---- */
 
-/** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
-static int64_t tile_share(const vxm_opencl *engine) {
+/** What a slab may take under the memory limit: of what is left, and what its buffers have already. */
+static int64_t slab_share(const vxm_opencl *engine) {
   enum {
     BUFFERS = 11 /**< flips, two results and four voters; and as much for lists of tiles and what is added */
   };
@@ -108,14 +108,14 @@ static int64_t tile_share(const vxm_opencl *engine) {
   return (int64_t)(left / BUFFERS);
 }
 
-vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
+vxm_status vxm_cl_slab_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
                               vxm_error *error) {
-  /* Bits of a tile are counted in 32 bits; flips, two results and four voters may be held. */
+  /* Bits of a slab are counted in 32 bits; flips, two results and four voters may be held. */
   const int64_t bytes_most = INT64_C(256) << 20, buffers = 8;
   const vxm_engine_info *info = &engine->base.info;
   int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
   int64_t most = vxm_min(vxm_min(info->block_bytes, info->global_bytes / buffers), bytes_most);
-  most = vxm_min(most, tile_share(engine));
+  most = vxm_min(most, slab_share(engine));
   if (slice > bytes_most || slice > info->block_bytes)
     return vxm_fail(error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
                     vxm_size_text_of((uint64_t)slice).text, info->renderer,
@@ -124,32 +124,32 @@ vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_
   return VXM_OK;
 }
 
-vxm_status vxm_cl_tile_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm_slice_job *tile,
+vxm_status vxm_cl_slab_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm_slab *slab,
                               vxm_error *error) {
-  size_t bytes = vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
-  vxm_status status = vxm_cl_reserve(engine, id, tile->words * sizeof(uint64_t), error);
-  for (int64_t k = tile->begin; k < tile->end && status == VXM_OK; k++)
+  size_t bytes = vxm_slab_slice_words(slab) * sizeof(uint64_t);
+  vxm_status status = vxm_cl_reserve(engine, id, slab->words * sizeof(uint64_t), error);
+  for (int64_t k = slab->begin; k < slab->end && status == VXM_OK; k++)
     status = vxm_cl_check(engine->cl->EnqueueWriteBuffer(engine->queue, engine->buffers[id].mem, CL_TRUE,
-                                                         (size_t)(k - tile->begin) * bytes, bytes,
-                                                         vxm_slice_job_slice_at(tile, tile->window->words, k),
-                                                         0, NULL, NULL),
+                                                         (size_t)(k - slab->begin) * bytes, bytes,
+                                                         vxm_slab_slice_at(slab, slab->window->words, k), 0,
+                                                         NULL, NULL),
                           "sending voxels", error);
   return status;
 }
 
-/** Whether the words of the tile lie in the window as they do in the tile. */
-static bool is_dense(const vxm_slice_job *tile) {
-  return tile->window->slice_words == vxm_slice_job_slice_words(tile) || tile->end - tile->begin == 1;
+/** Whether the words of the slab lie in the window as they do in the slab. */
+static bool is_dense(const vxm_slab *slab) {
+  return slab->window->slice_words == vxm_slab_slice_words(slab) || slab->end - slab->begin == 1;
 }
 
 vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_error *error) {
   const vxm_cl *cl = engine->cl;
-  size_t bytes = back->tile.words * sizeof(uint64_t);
+  size_t bytes = back->slab.words * sizeof(uint64_t);
   cl_event made = NULL;
-  uint64_t *to = vxm_slice_job_slice_at(&back->tile, back->tile.window->words, back->tile.begin);
-  if (back->is_or || !is_dense(&back->tile)) {
+  uint64_t *to = vxm_slab_slice_at(&back->slab, back->slab.window->words, back->slab.begin);
+  if (back->is_or || !is_dense(&back->slab)) {
     vxm_error local = VXM_ERROR_INIT;
-    to = back->block = vxm_alloc(engine->base.context, back->tile.words, sizeof *to, &local);
+    to = back->block = vxm_alloc(engine->base.context, back->slab.words, sizeof *to, &local);
     if (!to) {
       vxm_error_pass(error, &local);
       return local.code;
@@ -175,7 +175,7 @@ vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status
     back->event = NULL;
     vxm_status ended = vxm_cl_check(code, "reading voxels", status == VXM_OK ? error : NULL);
     if (ended == VXM_OK && back->block)
-      vxm_slice_job_take(&back->tile, back->tile.window->words, back->block, back->is_or);
+      vxm_slab_take(&back->slab, back->slab.window->words, back->block, back->is_or);
     status = status == VXM_OK ? ended : status;
   }
   vxm_free(engine->base.context, back->block);

@@ -13,7 +13,7 @@ vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t triangles, vxm_error *e
   return status == VXM_OK ? vxm_cl_reserve(engine, VXM_CL_ORDER, sizeof(uint32_t), error) : status;
 }
 
-static vxm_status flip(vxm_opencl *engine, const vxm_slice_job_columns *columns, vxm_error *error) {
+static vxm_status flip(vxm_opencl *engine, const vxm_slab_columns *columns, vxm_error *error) {
   vxm_status status = vxm_cl_clear_large(engine, columns->triangle_count, error);
   if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_FLIP_COLUMNS, columns->triangle_count,
@@ -31,7 +31,7 @@ static vxm_status flip(vxm_opencl *engine, const vxm_slice_job_columns *columns,
   return status;
 }
 
-static vxm_status flip_far(vxm_opencl *engine, const vxm_slice_job_columns *columns,
+static vxm_status flip_far(vxm_opencl *engine, const vxm_slab_columns *columns,
                            const vxm_parity_union_job *job, const vxm_disjoint_passes *passes, size_t pass,
                            vxm_error *error) {
   uint32_t *bits = NULL;
@@ -53,11 +53,11 @@ static vxm_status flip_far(vxm_opencl *engine, const vxm_slice_job_columns *colu
 }
 
 /** Notes which parts of a pass have flips. */
-static vxm_status touch(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_disjoint_passes *passes,
+static vxm_status touch(vxm_opencl *engine, const vxm_slab *slab, const vxm_disjoint_passes *passes,
                         size_t pass, vxm_error *error) {
   size_t first = pass > 0 ? passes->box_end[pass - 1] : 0, count = passes->box_end[pass] - first;
-  const cl_uint4 range = {{(cl_uint)first, (cl_uint)count, (cl_uint)tile->begin, (cl_uint)tile->end}};
-  const cl_uint rows = (cl_uint)tile->window->middle_dim;
+  const cl_uint4 range = {{(cl_uint)first, (cl_uint)count, (cl_uint)slab->begin, (cl_uint)slab->end}};
+  const cl_uint rows = (cl_uint)slab->window->middle_dim;
   return vxm_cl_run_groups(engine, VXM_CL_TOUCH, count,
                            VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_FLIPS), VXM_CL_MEM(engine, VXM_CL_BOXES),
                                        VXM_CL_MEM(engine, VXM_CL_TOUCHED), VXM_CL_VALUE(range),
@@ -65,11 +65,11 @@ static vxm_status touch(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
                            error);
 }
 
-static vxm_status fold(vxm_opencl *engine, const vxm_slice_job *tile, int axis, vxm_cl_buffer_id into,
-                       bool add, vxm_error *error) {
-  const vxm_window *window = tile->window;
-  cl_uint words = (cl_uint)(2 * tile->row_words), rows = (cl_uint)window->middle_dim, is_added = add;
-  cl_uint slices = (cl_uint)(tile->end - tile->begin), used = (cl_uint)((window->fast_dim + 31) / 32);
+static vxm_status fold(vxm_opencl *engine, const vxm_slab *slab, int axis, vxm_cl_buffer_id into, bool add,
+                       vxm_error *error) {
+  const vxm_window *window = slab->window;
+  cl_uint words = (cl_uint)(2 * slab->row_words), rows = (cl_uint)window->middle_dim, is_added = add;
+  cl_uint slices = (cl_uint)(slab->end - slab->begin), used = (cl_uint)((window->fast_dim + 31) / 32);
   if (axis == window->layout.fast) {
     cl_uint tail = window->fast_dim % 32 ? (UINT32_C(1) << (window->fast_dim % 32)) - 1 : UINT32_MAX;
     const cl_uint4 shape = {{rows * slices, words, used, tail}};
@@ -88,10 +88,10 @@ static vxm_status fold(vxm_opencl *engine, const vxm_slice_job *tile, int axis, 
                     error);
 }
 
-vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                           const vxm_disjoint_passes *passes, vxm_cl_buffer_id into, vxm_error *error) {
-  vxm_slice_job_columns columns = vxm_slice_job_columns_of(tile, job);
-  size_t bytes = tile->words * sizeof(uint64_t), begin = 0;
+  vxm_slab_columns columns = vxm_slab_columns_of(slab, job);
+  size_t bytes = slab->words * sizeof(uint64_t), begin = 0;
   columns.few_columns = FEW_COLUMNS;
   columns.ordered = passes->ordered;
   vxm_status status = vxm_cl_reserve_zero(engine, VXM_CL_FLIPS, bytes, error);
@@ -106,9 +106,9 @@ vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slice_job *tile, const v
     if (status == VXM_OK)
       status = flip_far(engine, &columns, job, passes, p, error);
     if (status == VXM_OK && job->has_voxels)
-      status = touch(engine, tile, passes, p, error);
+      status = touch(engine, slab, passes, p, error);
     if (status == VXM_OK)
-      status = fold(engine, tile, job->axis, into, p > 0, error);
+      status = fold(engine, slab, job->axis, into, p > 0, error);
     if (status == VXM_OK)
       status = vxm_progress(engine->base.context, job->phase, (double)(p + 1) / (double)passes->count, error);
   }

@@ -2,16 +2,16 @@
 /** Voxels of groups, counted by OpenCL: shaders/coverage.cl. */
 #include "gpu/opencl/cl_solid.h"
 
-/** Counts the groups of a tile, which begins and ends between slices of groups. */
-static vxm_status count_tile(vxm_opencl *engine, const vxm_slice_job *tile, int n, uint16_t *counts,
+/** Counts the groups of a slab, which begins and ends between slices of groups. */
+static vxm_status count_slab(vxm_opencl *engine, const vxm_slab *slab, int n, uint16_t *counts,
                              vxm_error *error) {
-  const cl_uint groups = (cl_uint)(tile->window->fast_dim / n),
-                rows = (cl_uint)(tile->window->middle_dim / n);
-  const cl_uint slices = (cl_uint)((tile->end - tile->begin) / n), words = (cl_uint)(2 * tile->row_words);
+  const cl_uint groups = (cl_uint)(slab->window->fast_dim / n),
+                rows = (cl_uint)(slab->window->middle_dim / n);
+  const cl_uint slices = (cl_uint)((slab->end - slab->begin) / n), words = (cl_uint)(2 * slab->row_words);
   const cl_uint4 shape = {{words, rows, groups, 0}};
   const cl_uint all = words * rows * slices, side = (cl_uint)n;
   size_t bytes = (size_t)groups * rows * slices * sizeof *counts;
-  vxm_status status = vxm_cl_tile_upload(engine, VXM_CL_RESULT, tile, error);
+  vxm_status status = vxm_cl_slab_upload(engine, VXM_CL_RESULT, slab, error);
   if (status == VXM_OK)
     status = vxm_cl_reserve(engine, VXM_CL_GROUPS, bytes, error);
   if (status == VXM_OK)
@@ -27,15 +27,15 @@ vxm_status vxm_cl_count(vxm_engine *base, uint16_t *counts, const vxm_window *wi
   vxm_opencl *engine = vxm_opencl_of(base);
   size_t slice = (size_t)(window->fast_dim / n) * (size_t)(window->middle_dim / n);
   int64_t slices = n;
-  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
+  vxm_status status = vxm_cl_slab_slices(&slices, engine, window, error);
   slices = vxm_max(slices / n, 1) * n;
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices) {
-    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
-    status = count_tile(engine, &tile, n, counts + (size_t)((k - window->begin) / n) * slice, error);
+    vxm_slab slab = vxm_slab_of(window, k, slices);
+    status = count_slab(engine, &slab, n, counts + (size_t)((k - window->begin) / n) * slice, error);
     if (status == VXM_OK)
       status =
           vxm_progress(base->context, "counting voxels",
-                       (double)(tile.end - window->begin) / (double)(window->end - window->begin), error);
+                       (double)(slab.end - window->begin) / (double)(window->end - window->begin), error);
   }
   return status;
 }

@@ -80,16 +80,8 @@ vxm_status vxm_cl_device_voxels(vxm_engine *base, vxm_device_voxels **out, const
 
 /* ---- A window that stays ---- */
 
-static size_t bytes_of(const vxm_window *window) {
-  return window->slice_words * (size_t)(window->end - window->begin) * sizeof(uint64_t);
-}
-
-static size_t offset_of(const vxm_slice_job *tile) {
-  return (size_t)(tile->begin - tile->window->begin) * vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
-}
-
 vxm_status vxm_cl_device_voxels_begin(vxm_engine *base, const vxm_window *window, vxm_error *error) {
-  return vxm_cl_clear(vxm_opencl_of(base), VXM_CL_STAYING, bytes_of(window), error);
+  return vxm_cl_clear(vxm_opencl_of(base), VXM_CL_STAYING, vxm_window_bytes(window), error);
 }
 
 static vxm_status copy(vxm_opencl *engine, vxm_cl_buffer_id from, size_t from_at, vxm_cl_buffer_id to,
@@ -100,22 +92,22 @@ static vxm_status copy(vxm_opencl *engine, vxm_cl_buffer_id from, size_t from_at
                       "copying a buffer", error);
 }
 
-vxm_status vxm_cl_tile_stay(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id from,
+vxm_status vxm_cl_slab_stay(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id from,
                             vxm_error *error) {
-  return copy(engine, from, 0, VXM_CL_STAYING, offset_of(tile), tile->words * sizeof(uint64_t), error);
+  return copy(engine, from, 0, VXM_CL_STAYING, vxm_slab_offset(slab), slab->words * sizeof(uint64_t), error);
 }
 
-vxm_status vxm_cl_tile_bring(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id to,
+vxm_status vxm_cl_slab_bring(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id to,
                              vxm_error *error) {
-  size_t bytes = tile->words * sizeof(uint64_t);
+  size_t bytes = slab->words * sizeof(uint64_t);
   vxm_status status = vxm_cl_reserve(engine, to, bytes, error);
-  return status == VXM_OK ? copy(engine, VXM_CL_STAYING, offset_of(tile), to, 0, bytes, error) : status;
+  return status == VXM_OK ? copy(engine, VXM_CL_STAYING, vxm_slab_offset(slab), to, 0, bytes, error) : status;
 }
 
 /** From bits to elements, or as they are. */
 static vxm_status take(vxm_opencl *engine, const vxm_device_info *info, int64_t index,
                        const vxm_window *window, vxm_error *error) {
-  size_t bytes = bytes_of(window), element = vxm_voxel_format_bytes(info->format);
+  size_t bytes = vxm_window_bytes(window), element = vxm_voxel_format_bytes(info->format);
   size_t at = (size_t)index * (size_t)info->step[0];
   cl_mem to = info->buffer;
   if (element == 0)
@@ -139,7 +131,7 @@ vxm_status vxm_cl_device_voxels_end(vxm_engine *base, vxm_device_voxels *voxels,
   vxm_opencl *engine = vxm_opencl_of(base);
   vxm_status status = VXM_OK;
   if (window->words)
-    status = vxm_cl_upload(engine, VXM_CL_STAYING, window->words, bytes_of(window), error);
+    status = vxm_cl_upload(engine, VXM_CL_STAYING, window->words, vxm_window_bytes(window), error);
   if (status == VXM_OK)
     status = take(engine, &voxels->info, index, window, error);
   return status == VXM_OK ? vxm_cl_check(engine->cl->Finish(engine->queue), "keeping voxels", error) : status;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Solids by OpenCL: tiles are made one after another, and each is taken back while the next is made. */
+/** Solids by OpenCL: slabs are made one after another, and each is taken back while the next is made. */
 #include "gpu/opencl/cl_solid.h"
 
 #include <string.h>
@@ -31,7 +31,9 @@ vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels,
   return status;
 }
 
-vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error) {
+/** Ends what is under way; after a failure, when flips may be left over and something may still run, too.
+ * Returns `status`, or the first failure. */
+static vxm_status finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error) {
   for (int i = 0; i < 2; i++)
     status = vxm_cl_return_end(engine, &back[i], status, error);
   if (status != VXM_OK) {
@@ -42,27 +44,27 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
   return status;
 }
 
-vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_tile_fn make,
+vxm_status vxm_cl_each_slab(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_slab_fn make,
                             void *payload, vxm_error *error) {
   vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_RESULT2}};
   int64_t slices = 1;
   int which = 0;
-  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
+  vxm_status status = vxm_cl_slab_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
+    vxm_slab slab = vxm_slab_of(window, k, slices);
     status = vxm_cl_return_end(engine, &back[which], status, error);
-    vxm_progress_part before = vxm_slice_job_progress(&tile);
+    vxm_progress_part before = vxm_slab_progress(&slab);
     if (status == VXM_OK)
-      status = make(engine, &tile, back[which].from, payload, error);
+      status = make(engine, &slab, back[which].from, payload, error);
     vxm_progress_leave(before);
-    back[which].tile = tile;
+    back[which].slab = slab;
     back[which].is_or = is_or;
     if (status == VXM_OK && engine->base.keeps)
-      status = vxm_cl_tile_stay(engine, &tile, back[which].from, error);
+      status = vxm_cl_slab_stay(engine, &slab, back[which].from, error);
     else if (status == VXM_OK)
       status = vxm_cl_return_begin(engine, &back[which], error);
   }
-  return vxm_cl_finish(engine, back, status, error);
+  return finish(engine, back, status, error);
 }
 
 /* ---- Unions ---- */
@@ -78,13 +80,13 @@ static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm
                                  method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX, error);
 }
 
-/** Makes the words of a tile: by `passes`, or by tiles of columns where there are none. */
-static vxm_status make_tile(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+/** Makes the words of a slab: by `passes`, or by tiles of columns where there are none. */
+static vxm_status make_slab(vxm_opencl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                             vxm_disjoint_passes *passes, vxm_cl_buffer_id into, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = VXM_OK;
   if (passes->count == 0) {
-    status = vxm_cl_tiles(engine, tile, job, into, &local);
+    status = vxm_cl_tiles(engine, slab, job, into, &local);
     if (status == VXM_OK)
       return VXM_OK;
     if (status != VXM_ERROR_RANGE || engine->options.cl_method == VXM_CL_TILES) {
@@ -93,9 +95,9 @@ static vxm_status make_tile(vxm_opencl *engine, const vxm_slice_job *tile, const
     }
     vxm_disjoint_passes_destroy(
         passes); /* the lists of tiles are too long: what nobody asked for is left again */
-    status = vxm_device_cache_passes(passes, &engine->device_cache, tile->window, job, 0, SIZE_MAX, error);
+    status = vxm_device_cache_passes(passes, &engine->device_cache, slab->window, job, 0, SIZE_MAX, error);
   }
-  return status == VXM_OK ? vxm_cl_columns(engine, tile, job, passes, into, error) : status;
+  return status == VXM_OK ? vxm_cl_columns(engine, slab, job, passes, into, error) : status;
 }
 
 typedef struct union_job {
@@ -103,16 +105,10 @@ typedef struct union_job {
   vxm_disjoint_passes *passes;
 } union_job;
 
-static vxm_status unite_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
-                             void *payload, vxm_error *error) {
+static vxm_status unite_slab(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id into, void *payload,
+                             vxm_error *error) {
   const union_job *u = payload;
-  return make_tile(engine, tile, u->job, u->passes, into, error);
-}
-
-static void clear(const vxm_window *window) {
-  for (int64_t k = window->begin; k < window->end; k++)
-    memset(vxm_window_row(window, 0, k), 0,
-           window->row_words * (size_t)window->middle_dim * sizeof *window->words);
+  return make_slab(engine, slab, u->job, u->passes, into, error);
 }
 
 vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_parity_union_job *job,
@@ -123,7 +119,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
     return vxm_fail_to_keep(base, error);
   if (job->part_begin >= job->part_end) {
     if (job->fresh && !base->keeps) /* what stays began as zeros */
-      clear(window);
+      vxm_window_clear(window, window->begin, window->end);
     return VXM_OK;
   }
   vxm_status status = vxm_device_cache_triangles(&engine->device_cache, job->triangles, job->placed, error);
@@ -132,7 +128,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, job->triangles, error);
   if (status == VXM_OK)
-    status = vxm_cl_each_tile(engine, window, !job->fresh, unite_tile, &(union_job){job, &passes}, error);
+    status = vxm_cl_each_slab(engine, window, !job->fresh, unite_slab, &(union_job){job, &passes}, error);
   if (status == VXM_OK && job->has_voxels)
     status = vxm_cl_touched_take(engine, job->has_voxels, job->triangles, error);
   vxm_disjoint_passes_destroy(&passes);
@@ -158,22 +154,22 @@ static voter_set voters_of(const vxm_vote_job *job) {
 
 /** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
  */
-static vxm_status make_voter(vxm_opencl *engine, const vxm_slice_job *tile, const voter_set *b, int v,
+static vxm_status make_voter(vxm_opencl *engine, const vxm_slab *slab, const voter_set *b, int v,
                              vxm_error *error) {
-  vxm_parity_union_job job = vxm_voter(b->job, tile->window, v);
+  vxm_parity_union_job job = vxm_voter(b->job, slab->window, v);
   vxm_disjoint_passes passes = {.context = engine->base.context};
   vxm_progress_part before = vxm_progress_enter((double)v / b->count, (v + 1.0) / b->count);
-  vxm_status status = choose(engine, tile->window, &job, &passes, error);
+  vxm_status status = choose(engine, slab->window, &job, &passes, error);
   if (status == VXM_OK)
-    status = make_tile(engine, tile, &job, &passes, b->words[v], error);
+    status = make_slab(engine, slab, &job, &passes, b->words[v], error);
   vxm_disjoint_passes_destroy(&passes);
   vxm_progress_leave(before);
   return status;
 }
 
-static vxm_status count_votes(vxm_opencl *engine, const vxm_slice_job *tile, const voter_set *b,
-                              vxm_vote rule, vxm_cl_buffer_id result, vxm_error *error) {
-  const cl_uint count = (cl_uint)(2 * tile->words);
+static vxm_status count_votes(vxm_opencl *engine, const vxm_slab *slab, const voter_set *b, vxm_vote rule,
+                              vxm_cl_buffer_id result, vxm_error *error) {
+  const cl_uint count = (cl_uint)(2 * slab->words);
   const cl_uint number = rule == VXM_VOTE_MAJORITY ? 1 : rule == VXM_VOTE_ANY ? 2 : 0;
   return vxm_cl_run(engine, VXM_CL_VOTE, count,
                     VXM_CL_ARGS(VXM_CL_MEM(engine, b->words[0]), VXM_CL_MEM(engine, b->words[1]),
@@ -189,18 +185,18 @@ typedef struct election {
   vxm_vote_tally *tally;
 } election;
 
-static vxm_status elect_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id result,
-                             void *payload, vxm_error *error) {
+static vxm_status elect_slab(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id result, void *payload,
+                             vxm_error *error) {
   const election *e = payload;
   uint32_t counted[2] = {0, 0};
-  vxm_status status = engine->base.keeps ? vxm_cl_tile_bring(engine, tile, result, error)
-                                         : vxm_cl_tile_upload(engine, result, tile, error);
+  vxm_status status = engine->base.keeps ? vxm_cl_slab_bring(engine, slab, result, error)
+                                         : vxm_cl_slab_upload(engine, result, slab, error);
   for (int v = 0; v < e->voters.count && status == VXM_OK; v++)
-    status = make_voter(engine, tile, &e->voters, v, error);
+    status = make_voter(engine, slab, &e->voters, v, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
   if (status == VXM_OK)
-    status = count_votes(engine, tile, &e->voters, e->job->rule, result, error);
+    status = count_votes(engine, slab, &e->voters, e->job->rule, result, error);
   if (status == VXM_OK)
     status = vxm_cl_download(engine, VXM_CL_TALLY, 0, counted, sizeof counted, error);
   e->tally->contested += counted[0];
@@ -218,7 +214,7 @@ vxm_status vxm_cl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
     status = clear_touched(engine, job->triangles, error);
   election e = {job, voters_of(job), tally};
   if (status == VXM_OK)
-    status = vxm_cl_each_tile(engine, window, false, elect_tile, &e, error);
+    status = vxm_cl_each_slab(engine, window, false, elect_slab, &e, error);
   if (status == VXM_OK && job->has_voxels)
     status = vxm_cl_touched_take(engine, job->has_voxels, job->triangles, error);
   return status;

@@ -31,16 +31,11 @@ vxm_status vxm_cl_device_voxels(vxm_engine *engine, vxm_device_voxels **out, con
 vxm_status vxm_cl_device_voxels_begin(vxm_engine *engine, const vxm_window *window, vxm_error *error);
 vxm_status vxm_cl_device_voxels_end(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
                                     const vxm_window *window, vxm_error *error);
-/** Puts a tile of a window that stays where it belongs. */
-vxm_status vxm_cl_tile_stay(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id from,
+/** Puts a slab of a window that stays where it belongs. */
+vxm_status vxm_cl_slab_stay(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id from,
                             vxm_error *error);
 /** The other way. */
-vxm_status vxm_cl_tile_bring(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id to,
-                             vxm_error *error);
-
-/** Ends what is under way; after a failure, when flips may be left over and something may still run, too.
- * Returns `status`, or the first failure. */
-vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error);
+vxm_status vxm_cl_slab_bring(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id to, vxm_error *error);
 
 /** In VXM_CL_TOUCHED: a part that sets no voxel, and is not looked at. */
 #define VXM_CL_NOT_ASKED UINT32_MAX
@@ -48,22 +43,22 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
 vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels,
                                const vxm_triangle_set *triangles, vxm_error *error);
 
-/** Makes the words of a tile in a buffer. */
-typedef vxm_status (*vxm_cl_tile_fn)(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
+/** Makes the words of a slab in a buffer. */
+typedef vxm_status (*vxm_cl_slab_fn)(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id into,
                                      void *payload, vxm_error *error);
-/** Makes a window tile by tile, and takes each back while the next is made; `is_or`: adds to the window. */
-vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_tile_fn make,
+/** Makes a window slab by slab, and takes each back while the next is made; `is_or`: adds to the window. */
+vxm_status vxm_cl_each_slab(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_slab_fn make,
                             void *payload, vxm_error *error);
 
-/** Parity of the job's parts along its axis, united, in a buffer of a tile, triangle by triangle
+/** Parity of the job's parts along its axis, united, in a buffer of a slab, triangle by triangle
  * (cl_columns.c). The passes are those of the job, and on the device. */
-vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                           const vxm_disjoint_passes *passes, vxm_cl_buffer_id into, vxm_error *error);
 
 /** Whether the job can be done tile by tile: its columns run along the bits, and no triangle is oversized. */
 bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job);
-/** The same for such a job, tile of columns by tile of columns (cl_tiles.c). */
-vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+/** The same for such a job, slab of columns by slab of columns (cl_tiles.c). */
+vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                         vxm_cl_buffer_id into, vxm_error *error);
 
 #endif

@@ -16,7 +16,7 @@ typedef struct making {
   const vxm_sparse_job *job;
   vxm_disjoint_passes passes;
   vxm_cl_tree tree;
-  vxm_slice_job_columns columns;
+  vxm_slab_columns columns;
   vxm_cl_buffer_id bricks, inside; /**< of the union of all passes */
 } making;
 
@@ -41,8 +41,8 @@ static bool has_oversized(const vxm_oversized *oversized, const vxm_sparse_job *
 
 /** Columns along x. Those of a node beyond the grid have no flips; its first column, which tells how it is
  * left, lies in the grid. */
-static vxm_slice_job_columns columns_of(const vxm_cl_tree *tree, const vxm_lattice *lattice) {
-  vxm_slice_job_columns columns = {
+static vxm_slab_columns columns_of(const vxm_cl_tree *tree, const vxm_lattice *lattice) {
+  vxm_slab_columns columns = {
       .axes = {1, 2, 0}, .bits = lattice->bits, .keep_before = 1, .few_columns = FEW_COLUMNS};
   for (int i = 0; i < 3; i++)
     columns.last[i] = (int32_t)tree->space.dims[columns.axes[i]];
@@ -54,7 +54,7 @@ static vxm_slice_job_columns columns_of(const vxm_cl_tree *tree, const vxm_latti
 /** Flips what the triangles of a pass flip or, with `asks`, finds out which of their parts flip something. */
 static vxm_status flip(making *m, cl_uint asks, vxm_error *error) {
   vxm_opencl *engine = m->engine;
-  const vxm_slice_job_columns columns = m->columns;
+  const vxm_slab_columns columns = m->columns;
   vxm_status status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
   if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_FLIP_BRICKS, columns.triangle_count,

@@ -10,14 +10,14 @@ typedef struct surface_job {
   bool is_fresh;
 } surface_job;
 
-static vxm_status set_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
-                           void *payload, vxm_error *error) {
+static vxm_status set_tile(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id into, void *payload,
+                           vxm_error *error) {
   const surface_job *s = payload;
-  vxm_slice_job_surface job = vxm_slice_job_surface_of(tile, s->surface, s->kind);
+  vxm_slab_surface job = vxm_slab_surface_of(slab, s->surface, s->kind);
   job.few_columns = FEW_COLUMNS;
   vxm_status status = engine->base.keeps && !s->is_fresh
-                          ? vxm_cl_tile_bring(engine, tile, into, error)
-                          : vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
+                          ? vxm_cl_slab_bring(engine, slab, into, error)
+                          : vxm_cl_clear(engine, into, slab->words * sizeof(uint64_t), error);
   if (status == VXM_OK)
     status = vxm_cl_clear_large(engine, job.triangle_count, error);
   const vxm_cl_arg args[] = {VXM_CL_MEM(engine, VXM_CL_SURFACE_POINTS),
@@ -29,8 +29,8 @@ static vxm_status set_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl
   if (status == VXM_OK)
     status = vxm_cl_run_groups(engine, VXM_CL_SET_LARGE, vxm_cl_busy_groups(engine), args, count, error);
   return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface",
-                                         (double)(tile->end - tile->window->begin) /
-                                             (double)(tile->window->end - tile->window->begin),
+                                         (double)(slab->end - slab->window->begin) /
+                                             (double)(slab->window->end - slab->window->begin),
                                          error)
                           : status;
 }
@@ -43,7 +43,7 @@ vxm_status vxm_cl_surface(vxm_engine *base, const vxm_surface *surface, const vx
     return vxm_fail_to_keep(base, error);
   if (status == VXM_OK)
     status =
-        vxm_cl_each_tile(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind, is_fresh}, error);
+        vxm_cl_each_slab(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind, is_fresh}, error);
   return status == VXM_OK && !base->keeps ? vxm_oversized_surface_add(&engine->device_cache.oversized_surface,
                                                                       surface, window, kind, error)
                                           : status;

@@ -11,12 +11,11 @@ enum {
 };
 
 /** What surfaces of voxels are told; `step` tells where the places of y and z begin. */
-static vxm_slice_job_surface job_of(const vxm_cl_tree *tree, const vxm_surface *surface,
-                                    vxm_surface_kind kind) {
-  vxm_slice_job_surface job = {.bits = surface->lattice.bits,
-                               .thin = kind == VXM_SURFACE_THIN,
-                               .triangle_count = (uint32_t)surface->triangle_count,
-                               .few_columns = FEW_COLUMNS};
+static vxm_slab_surface job_of(const vxm_cl_tree *tree, const vxm_surface *surface, vxm_surface_kind kind) {
+  vxm_slab_surface job = {.bits = surface->lattice.bits,
+                          .thin = kind == VXM_SURFACE_THIN,
+                          .triangle_count = (uint32_t)surface->triangle_count,
+                          .few_columns = FEW_COLUMNS};
   for (int a = 0; a < 3; a++)
     job.last[a] = (int32_t)tree->space.dims[a];
   job.step[0] = (uint32_t)tree->cells[0];
@@ -26,7 +25,7 @@ static vxm_slice_job_surface job_of(const vxm_cl_tree *tree, const vxm_surface *
 
 static vxm_status set_voxels(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_surface *surface,
                              vxm_surface_kind kind, vxm_error *error) {
-  const vxm_slice_job_surface job = job_of(tree, surface, kind);
+  const vxm_slab_surface job = job_of(tree, surface, kind);
   const vxm_cl_arg args[] = {
       VXM_CL_MEM(engine, VXM_CL_SURFACE_POINTS), VXM_CL_MEM(engine, VXM_CL_SURFACE_CORNERS),
       VXM_CL_MEM(engine, VXM_CL_BRICKS),         VXM_CL_MEM(engine, VXM_CL_PLACES),

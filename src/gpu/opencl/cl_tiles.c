@@ -11,11 +11,11 @@ enum {
   ROLE_SHIFT = 29             /**< as in the shader */
 };
 
-/** A job on a tile of the window, and the tiles of columns in that. */
+/** A job on a slab of the window, and the tiles of columns in that. */
 typedef struct tiling {
   vxm_opencl *engine;
-  const vxm_slice_job *tile;
-  vxm_slice_job_columns columns;
+  const vxm_slab *slab;
+  vxm_slab_columns columns;
   cl_uint roles; /**< bit r: triangles of role 1 << r count */
   cl_uint across, count;
 } tiling;
@@ -43,11 +43,9 @@ vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_triangle_set *triang
   return status;
 }
 
-static tiling tiling_of(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job) {
-  tiling t = {.engine = engine,
-              .tile = tile,
-              .columns = vxm_slice_job_columns_of(tile, job),
-              .roles = job->roles & 7};
+static tiling tiling_of(vxm_opencl *engine, const vxm_slab *slab, const vxm_parity_union_job *job) {
+  tiling t = {
+      .engine = engine, .slab = slab, .columns = vxm_slab_columns_of(slab, job), .roles = job->roles & 7};
   const vxm_triangle_set *triangles = job->triangles;
   size_t first = triangles->parts[job->part_begin].begin, end = triangles->parts[job->part_end - 1].end;
   cl_uint tile_u = engine->group >= 32 ? 8 : 4, tile_v = (cl_uint)engine->group / tile_u;
@@ -117,7 +115,7 @@ static vxm_status list_triangles(tiling *t, cl_uint *pairs, vxm_error *error) {
 static vxm_status fill_words(tiling *t, cl_uint first, cl_uint words, vxm_cl_buffer_id into,
                              vxm_error *error) {
   vxm_opencl *engine = t->engine;
-  vxm_slice_job_columns part = t->columns;
+  vxm_slab_columns part = t->columns;
   int32_t end = part.first[2] + (int32_t)(first + words) * 32;
   part.first[2] += (int32_t)first * 32;
   part.keep_before |= first > 0;
@@ -139,7 +137,7 @@ static vxm_status fill_words(tiling *t, cl_uint first, cl_uint words, vxm_cl_buf
   return vxm_cl_run_groups(engine, VXM_CL_FILL_TILES, t->count, args, sizeof args / sizeof args[0], error);
 }
 
-vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                         vxm_cl_buffer_id into, vxm_error *error) {
   cl_uint pairs = 0;
   vxm_status status = vxm_cl_ready(engine, VXM_CL_TILES_PROGRAM, error);
@@ -150,15 +148,15 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
   if (status == VXM_OK)
     status = vxm_cl_place_parts(engine, job->triangles, error);
   if (status == VXM_OK)
-    status = vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
+    status = vxm_cl_clear(engine, into, slab->words * sizeof(uint64_t), error);
   if (status == VXM_OK && !job->has_voxels) /* written all the same */
     status =
         vxm_cl_reserve(engine, VXM_CL_TOUCHED, job->triangles->split.part_count * sizeof(uint32_t), error);
   if (status != VXM_OK)
     return status;
-  tiling t = tiling_of(engine, tile, job);
+  tiling t = tiling_of(engine, slab, job);
   status = list_triangles(&t, &pairs, error);
-  cl_uint words = (cl_uint)(tile->window->fast_dim + 31) / 32;
+  cl_uint words = (cl_uint)(slab->window->fast_dim + 31) / 32;
   cl_uint most = (cl_uint)(TILE_LOCAL_BYTES / sizeof(cl_uint) / engine->group);
   double since = vxm_clock_ms();
   for (cl_uint w = 0; w < words && pairs > 0 && status == VXM_OK; w += most)

@@ -70,11 +70,11 @@ static vxm_status upload_places(vxm_opencl *engine, const vxm_cl_tree *tree, vxm
 
 /* ---- Cells ---- */
 
-static vxm_slice_job_surface surface_of(const vxm_cl_tree *tree, const vxm_lattice *lattice) {
-  vxm_slice_job_surface job = {.bits = lattice->bits + CELL_BITS,
-                               .few_columns = FEW_COLUMNS,
-                               .shift = (int32_t)(lattice->unit / 2),
-                               .shadow = 1};
+static vxm_slab_surface surface_of(const vxm_cl_tree *tree, const vxm_lattice *lattice) {
+  vxm_slab_surface job = {.bits = lattice->bits + CELL_BITS,
+                          .few_columns = FEW_COLUMNS,
+                          .shift = (int32_t)(lattice->unit / 2),
+                          .shadow = 1};
   for (int a = 0; a < 3; a++)
     job.last[a] = tree->cells[a];
   return job;
@@ -86,7 +86,7 @@ typedef struct marking {
   cl_uint2 list;
 } marking;
 
-static vxm_status mark_triangles(vxm_opencl *engine, const vxm_slice_job_surface *job, const marking *m,
+static vxm_status mark_triangles(vxm_opencl *engine, const vxm_slab_surface *job, const marking *m,
                                  vxm_error *error) {
   vxm_status status = vxm_cl_clear_large(engine, job->triangle_count, error);
   if (status == VXM_OK)
@@ -109,7 +109,7 @@ static vxm_status mark_triangles(vxm_opencl *engine, const vxm_slice_job_surface
 /** What is inside may lie partly beyond the grid, and has to be cut there: the last cells along an axis
  * become nodes, where bodies reach beyond them and cells or nodes above do. */
 static vxm_status mark_border(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_sparse_job *job,
-                              const vxm_slice_job_surface *surface, vxm_error *error) {
+                              const vxm_slab_surface *surface, vxm_error *error) {
   const vxm_lattice *lattice = &job->placed->lattice;
   int64_t low[3] = {INT64_MAX, INT64_MAX, INT64_MAX}, high[3] = {INT64_MIN, INT64_MIN, INT64_MIN};
   vxm_status status = VXM_OK;
@@ -145,7 +145,7 @@ static vxm_status mark_border(vxm_opencl *engine, const vxm_cl_tree *tree, const
 
 static vxm_status mark(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_sparse_job *job,
                        const vxm_disjoint_passes *passes, vxm_error *error) {
-  vxm_slice_job_surface surface = surface_of(tree, &job->placed->lattice);
+  vxm_slab_surface surface = surface_of(tree, &job->placed->lattice);
   const marking all = {VXM_CL_POINTS,
                        VXM_CL_CORNERS,
                        VXM_CL_ORDER,
@@ -164,7 +164,7 @@ static vxm_status mark(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_sp
 /** The cells that the triangles of a surface touch. */
 static vxm_status mark_surface(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_surface *surface,
                                vxm_error *error) {
-  vxm_slice_job_surface job = surface_of(tree, &surface->lattice);
+  vxm_slab_surface job = surface_of(tree, &surface->lattice);
   const marking all = {VXM_CL_SURFACE_POINTS, VXM_CL_SURFACE_CORNERS, VXM_CL_SURFACE_CORNERS, {{0, 0}}};
   job.shift = job.shadow = 0;
   job.triangle_count = (uint32_t)surface->triangle_count;

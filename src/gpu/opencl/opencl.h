@@ -86,7 +86,7 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_ORIGINALS = VXM_CACHED_ORIGINALS,
   VXM_CL_ENTRIES = VXM_CACHED_ENTRIES,
   VXM_CL_NOISE = VXM_CACHED_NOISE,
-  VXM_CL_FLIPS = VXM_CACHED_COUNT, /**< a bit per voxel of a tile; zero between uses */
+  VXM_CL_FLIPS = VXM_CACHED_COUNT, /**< a bit per voxel of a slab; zero between uses */
   VXM_CL_LARGE,                    /**< how many triangles of many columns, and which */
   VXM_CL_RESULT,                   /**< two: one is read while the other is made */
   VXM_CL_RESULT2,
@@ -220,25 +220,25 @@ void vxm_cl_device_cache_release(vxm_engine *engine, vxm_device_cache_id id);
 vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, void *out, size_t bytes,
                            vxm_error *error);
 
-/* ---- Tiles (cl_buffer.c) ---- */
+/* ---- Slabs (cl_buffer.c) ---- */
 
-/** How many slices of a window fit a tile. @return VXM_OK; VXM_ERROR_RANGE if not even one does */
-vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
+/** How many slices of a window fit a slab. @return VXM_OK; VXM_ERROR_RANGE if not even one does */
+vxm_status vxm_cl_slab_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
                               vxm_error *error);
-/** Puts the words of a tile into a buffer. */
-vxm_status vxm_cl_tile_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm_slice_job *tile,
+/** Puts the words of a slab into a buffer. */
+vxm_status vxm_cl_slab_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm_slab *slab,
                               vxm_error *error);
 
-/** A tile on its way back. Start from {0}. */
+/** A slab on its way back. Start from {0}. */
 typedef struct vxm_cl_return {
-  vxm_slice_job tile;
+  vxm_slab slab;
   vxm_cl_buffer_id from;
   bool is_or;      /**< added to the window's words */
   uint64_t *block; /**< what is added waits here */
   cl_event event;  /**< NULL: none is under way */
 } vxm_cl_return;
 
-/** Begins to take back a tile, once all is done that was queued. */
+/** Begins to take back a slab, once all is done that was queued. */
 vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_error *error);
 /** Waits for it; also after a failure. Returns `status`, or the first failure. */
 vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status status, vxm_error *error);

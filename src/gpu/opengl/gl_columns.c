@@ -12,9 +12,8 @@ enum {
   LARGE_HEADER = 4  /**< words of an indirect draw */
 };
 
-static vxm_gl_job job_of(const vxm_opengl *engine, const vxm_slice_job *tile,
-                         const vxm_parity_union_job *job) {
-  vxm_gl_job out = {.columns = vxm_slice_job_columns_of(tile, job)};
+static vxm_gl_job job_of(const vxm_opengl *engine, const vxm_slab *slab, const vxm_parity_union_job *job) {
+  vxm_gl_job out = {.columns = vxm_slab_columns_of(slab, job)};
   out.columns.few_columns = engine->can_pull ? FEW_COLUMNS : UINT32_MAX;
   return out;
 }
@@ -89,7 +88,7 @@ static vxm_status flip_far(vxm_opengl *engine, const vxm_gl_job *gl_job, const v
   return status;
 }
 
-vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_disjoint_passes *passes,
+vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_slab *slab, const vxm_disjoint_passes *passes,
                         size_t pass, vxm_error *error) {
   size_t first = pass > 0 ? passes->box_end[pass - 1] : 0, count = passes->box_end[pass] - first;
   vxm_status status = vxm_gl_use(engine, VXM_GL_TOUCH, error);
@@ -98,24 +97,24 @@ vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_slice_job *tile, const vxm
   vxm_gl_bind(engine, 3, VXM_GL_FLIPS);
   vxm_gl_bind(engine, 4, VXM_GL_BOXES);
   vxm_gl_bind(engine, 5, VXM_GL_TOUCHED);
-  engine->context.gl.Uniform4ui(0, (GLuint)first, (GLuint)count, (GLuint)tile->begin, (GLuint)tile->end);
-  engine->context.gl.Uniform1ui(1, (GLuint)tile->window->middle_dim);
+  engine->context.gl.Uniform4ui(0, (GLuint)first, (GLuint)count, (GLuint)slab->begin, (GLuint)slab->end);
+  engine->context.gl.Uniform1ui(1, (GLuint)slab->window->middle_dim);
   vxm_gl_dispatch(&engine->context.gl, count, true);
   /* What comes next clears the flips. */
   engine->context.gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return VXM_OK;
 }
 
-static vxm_status fold(vxm_opengl *engine, const vxm_slice_job *tile, int axis, vxm_gl_buffer_id into,
+static vxm_status fold(vxm_opengl *engine, const vxm_slab *slab, int axis, vxm_gl_buffer_id into,
                        bool is_added, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
-  const vxm_window *window = tile->window;
+  const vxm_window *window = slab->window;
   bool along = axis == window->layout.fast;
   vxm_status status = vxm_gl_use(engine, along ? VXM_GL_FOLD_ROWS : VXM_GL_FOLD_ACROSS, error);
   if (status != VXM_OK)
     return status;
-  GLuint words = (GLuint)(2 * tile->row_words), rows = (GLuint)window->middle_dim;
-  GLuint slices = (GLuint)(tile->end - tile->begin), used = (GLuint)((window->fast_dim + 31) / 32);
+  GLuint words = (GLuint)(2 * slab->row_words), rows = (GLuint)window->middle_dim;
+  GLuint slices = (GLuint)(slab->end - slab->begin), used = (GLuint)((window->fast_dim + 31) / 32);
   vxm_gl_bind(engine, 3, VXM_GL_FLIPS);
   vxm_gl_bind(engine, 5, into);
   gl->Uniform1ui(1, is_added);
@@ -134,10 +133,10 @@ static vxm_status fold(vxm_opengl *engine, const vxm_slice_job *tile, int axis, 
   return VXM_OK;
 }
 
-vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                           const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
-  vxm_gl_job gl_job = job_of(engine, tile, job);
-  size_t bytes = tile->words * sizeof(uint64_t), begin = 0;
+  vxm_gl_job gl_job = job_of(engine, slab, job);
+  size_t bytes = slab->words * sizeof(uint64_t), begin = 0;
   vxm_status status = vxm_gl_reserve_zero(engine, VXM_GL_FLIPS, bytes, error);
   if (status == VXM_OK)
     status = vxm_gl_reserve(engine, into, bytes, error);
@@ -153,9 +152,9 @@ vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slice_job *tile, const v
     if (status == VXM_OK)
       status = flip_far(engine, &gl_job, job, passes, p, error);
     if (status == VXM_OK && job->has_voxels)
-      status = vxm_gl_touch(engine, tile, passes, p, error);
+      status = vxm_gl_touch(engine, slab, passes, p, error);
     if (status == VXM_OK)
-      status = fold(engine, tile, job->axis, into, p > 0, error);
+      status = fold(engine, slab, job->axis, into, p > 0, error);
     if (status == VXM_OK)
       status = vxm_gl_check(&engine->context.gl, "opengl: drawing columns", error);
     if (status == VXM_OK)

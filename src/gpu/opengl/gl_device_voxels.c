@@ -110,21 +110,13 @@ vxm_status vxm_gl_device_voxels(vxm_engine *base, vxm_device_voxels **out, const
 
 /* ---- A window that stays ---- */
 
-static size_t bytes_of(const vxm_window *window) {
-  return window->slice_words * (size_t)(window->end - window->begin) * sizeof(uint64_t);
-}
-
-static size_t offset_of(const vxm_slice_job *tile) {
-  return (size_t)(tile->begin - tile->window->begin) * vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
-}
-
 vxm_status vxm_gl_device_voxels_begin(vxm_engine *base, const vxm_window *window, vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
   const vxm_gl *gl = &engine->context.gl;
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_gl_reserve(engine, VXM_GL_STAYING, bytes_of(window), error);
+  status = vxm_gl_reserve(engine, VXM_GL_STAYING, vxm_window_bytes(window), error);
   if (status == VXM_OK) {
     gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_STAYING].name);
     gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
@@ -144,22 +136,23 @@ static vxm_status copy(vxm_opengl *engine, vxm_gl_buffer_id from, size_t from_at
   return vxm_gl_check(gl, "opengl: copying a buffer", error);
 }
 
-vxm_status vxm_gl_tile_stay(vxm_opengl *engine, const vxm_slice_job *tile, vxm_error *error) {
-  return copy(engine, VXM_GL_RESULT, 0, VXM_GL_STAYING, offset_of(tile), tile->words * sizeof(uint64_t),
+vxm_status vxm_gl_slab_stay(vxm_opengl *engine, const vxm_slab *slab, vxm_error *error) {
+  return copy(engine, VXM_GL_RESULT, 0, VXM_GL_STAYING, vxm_slab_offset(slab), slab->words * sizeof(uint64_t),
               error);
 }
 
-vxm_status vxm_gl_tile_bring(vxm_opengl *engine, const vxm_slice_job *tile, vxm_error *error) {
-  size_t bytes = tile->words * sizeof(uint64_t);
+vxm_status vxm_gl_slab_bring(vxm_opengl *engine, const vxm_slab *slab, vxm_error *error) {
+  size_t bytes = slab->words * sizeof(uint64_t);
   vxm_status status = vxm_gl_reserve(engine, VXM_GL_RESULT, bytes, error);
-  return status == VXM_OK ? copy(engine, VXM_GL_STAYING, offset_of(tile), VXM_GL_RESULT, 0, bytes, error)
-                          : status;
+  return status == VXM_OK
+             ? copy(engine, VXM_GL_STAYING, vxm_slab_offset(slab), VXM_GL_RESULT, 0, bytes, error)
+             : status;
 }
 
 static vxm_status take(vxm_opengl *engine, const vxm_device_info *info, const vxm_window *window,
                        vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
-  GLuint words = (GLuint)(bytes_of(window) / sizeof(uint32_t));
+  GLuint words = (GLuint)(vxm_window_bytes(window) / sizeof(uint32_t));
   GLuint unit = info->format == VXM_VOXEL_FORMAT_FLOAT32 ? 1 : 0;
   vxm_status status = vxm_gl_use(engine, VXM_GL_DEVICE_VOXELS, error);
   if (status != VXM_OK)
@@ -185,7 +178,7 @@ vxm_status vxm_gl_device_voxels_end(vxm_engine *base, vxm_device_voxels *voxels,
   if (status != VXM_OK)
     return status;
   if (window->words)
-    status = vxm_gl_upload(engine, VXM_GL_STAYING, window->words, bytes_of(window), error);
+    status = vxm_gl_upload(engine, VXM_GL_STAYING, window->words, vxm_window_bytes(window), error);
   if (status == VXM_OK)
     status = take(engine, &voxels->info, window, error);
   vxm_gl_leave(&engine->context);

@@ -28,11 +28,11 @@ typedef struct slice_job {
 
 typedef struct slicing {
   vxm_opengl *engine;
-  const vxm_slice_job *tile;
+  const vxm_slab *slab;
   const vxm_parity_union_job *job;
   const vxm_disjoint_passes *passes;
   size_t triangle_begin, triangle_end; /**< places in the lists of the passes */
-  vxm_slice_job_columns columns;       /**< axes and voxels of the tile */
+  vxm_slab_columns columns;            /**< axes and voxels of the slab */
   slice_job gl_job;
   int64_t begin, end;       /**< slices that are drawn together */
   size_t first[LAYERS + 1]; /**< of each slice: where its triangles begin in the list */
@@ -190,7 +190,7 @@ static void draw_layers(slicing *s) {
 static vxm_status pack(slicing *s, vxm_error *error) {
   vxm_opengl *engine = s->engine;
   const vxm_gl *gl = &engine->context.gl;
-  const vxm_window *window = s->tile->window;
+  const vxm_window *window = s->slab->window;
   const int layout[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
   GLuint places[3] = {0, 0, 0};
   vxm_status status = vxm_gl_use(engine, VXM_GL_PACK, error);
@@ -203,12 +203,12 @@ static vxm_status pack(slicing *s, vxm_error *error) {
   const int32_t *view = s->gl_job.view, *first = s->columns.first;
   gl->BindTexture(GL_TEXTURE_2D_ARRAY, engine->presence.texture);
   vxm_gl_bind(engine, 3, VXM_GL_FLIPS);
-  gl->Uniform4ui(0, (GLuint)(2 * s->tile->words), (GLuint)(2 * s->tile->row_words),
+  gl->Uniform4ui(0, (GLuint)(2 * s->slab->words), (GLuint)(2 * s->slab->row_words),
                  (GLuint)window->middle_dim, (GLuint)window->fast_dim);
   gl->Uniform4ui(1, places[0], places[1], places[2], 0);
   gl->Uniform4i(2, view[0] - first[0], view[1] - first[1], (GLint)s->begin - first[2], 0);
   gl->Uniform4i(3, view[2], view[3], (GLint)(s->end - s->begin), 0);
-  vxm_gl_dispatch(gl, 2 * s->tile->words, false);
+  vxm_gl_dispatch(gl, 2 * s->slab->words, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   return VXM_OK;
 }
@@ -283,9 +283,9 @@ static vxm_status merge(slicing *s, vxm_gl_buffer_id into, bool is_added, vxm_er
     return status;
   vxm_gl_bind(engine, 3, VXM_GL_FLIPS);
   vxm_gl_bind(engine, 5, into);
-  gl->Uniform1ui(0, (GLuint)(2 * s->tile->words));
+  gl->Uniform1ui(0, (GLuint)(2 * s->slab->words));
   gl->Uniform1ui(1, is_added);
-  vxm_gl_dispatch(gl, 2 * s->tile->words, false);
+  vxm_gl_dispatch(gl, 2 * s->slab->words, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return VXM_OK;
 }
@@ -303,7 +303,7 @@ static vxm_status draw_pass(slicing *s, size_t pass, vxm_gl_buffer_id into, vxm_
           vxm_progress(s->engine->base.context, "drawing slices", done / (double)s->passes->count, error);
   }
   if (status == VXM_OK && s->job->has_voxels)
-    status = vxm_gl_touch(s->engine, s->tile, s->passes, pass, error);
+    status = vxm_gl_touch(s->engine, s->slab, s->passes, pass, error);
   return status == VXM_OK ? merge(s, into, pass > 0, error) : status;
 }
 
@@ -313,10 +313,10 @@ bool vxm_gl_can_slice(const vxm_parity_union_job *job) {
          ((job->roles & VXM_ROLE_CAP) && job->part_end <= split->kind_end[VXM_PART_CAPPED]);
 }
 
-vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                          const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
-  slicing s = {.engine = engine, .tile = tile, .job = job, .passes = passes};
-  size_t bytes = tile->words * sizeof(uint64_t);
+  slicing s = {.engine = engine, .slab = slab, .job = job, .passes = passes};
+  size_t bytes = slab->words * sizeof(uint64_t);
   if (!engine->can_pull)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
                     "the vertex shaders of %s read no buffers; use --gl-method columns",
@@ -326,7 +326,7 @@ vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slice_job *tile, const vx
                     "a vertex lies too far outside the grid for slices; use --gl-method columns");
   vxm_parity_union_job turned = *job;
   turned.axis = engine->options.slice_axis;
-  s.columns = vxm_slice_job_columns_of(tile, &turned);
+  s.columns = vxm_slab_columns_of(slab, &turned);
   memcpy(s.gl_job.axes, s.columns.axes, sizeof s.gl_job.axes);
   s.gl_job.bits = s.columns.bits;
   vxm_status status = vxm_gl_reserve_zero(engine, VXM_GL_FLIPS, bytes, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Solids by OpenGL: tiles are drawn one after another, and each is taken back while the next is drawn. */
+/** Solids by OpenGL: slabs are drawn one after another, and each is taken back while the next is drawn. */
 #include "gpu/opengl/gl_solid.h"
 
 #include <string.h>
@@ -16,24 +16,24 @@ static vxm_status finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status s
   return status;
 }
 
-vxm_status vxm_gl_each_tile(vxm_opengl *engine, const vxm_window *window, bool is_or, vxm_gl_tile_fn make,
+vxm_status vxm_gl_each_slab(vxm_opengl *engine, const vxm_window *window, bool is_or, vxm_gl_slab_fn make,
                             void *payload, vxm_error *error) {
   vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
   int64_t slices = 1;
   int which = 0;
-  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
+  vxm_status status = vxm_gl_slab_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
-    vxm_progress_part before = vxm_slice_job_progress(&tile);
-    status = make(engine, &tile, payload, error);
+    vxm_slab slab = vxm_slab_of(window, k, slices);
+    vxm_progress_part before = vxm_slab_progress(&slab);
+    status = make(engine, &slab, payload, error);
     vxm_progress_leave(before);
     if (status != VXM_OK)
       break;
     if (engine->base.keeps) {
-      status = vxm_gl_tile_stay(engine, &tile, error);
+      status = vxm_gl_slab_stay(engine, &slab, error);
       continue;
     }
-    back[which] = (vxm_gl_return){.tile = tile, .is_or = is_or, .staging = which};
+    back[which] = (vxm_gl_return){.slab = slab, .is_or = is_or, .staging = which};
     status = vxm_gl_return_begin(engine, &back[which], error);
     if (status == VXM_OK)
       status = vxm_gl_return_end(engine, &back[which ^ 1], error);
@@ -42,10 +42,10 @@ vxm_status vxm_gl_each_tile(vxm_opengl *engine, const vxm_window *window, bool i
 }
 
 /** By the method that was chosen; parts that stay open have no tetrahedra to speak of, and go by columns. */
-static vxm_status make_tile(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+static vxm_status make_slab(vxm_opengl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                             const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
   bool slices = engine->options.gl_method != VXM_GL_COLUMNS && vxm_gl_can_slice(job);
-  return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, tile, job, passes, into, error);
+  return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, slab, job, passes, into, error);
 }
 
 static vxm_status create_passes(vxm_disjoint_passes *out, vxm_opengl *engine, const vxm_window *window,
@@ -86,15 +86,9 @@ typedef struct unite_work {
   const vxm_disjoint_passes *passes;
 } unite_work;
 
-static vxm_status unite_tile(vxm_opengl *engine, const vxm_slice_job *tile, void *payload, vxm_error *error) {
+static vxm_status unite_slab(vxm_opengl *engine, const vxm_slab *slab, void *payload, vxm_error *error) {
   const unite_work *work = payload;
-  return make_tile(engine, tile, work->job, work->passes, VXM_GL_RESULT, error);
-}
-
-static void clear(const vxm_window *window) {
-  for (int64_t k = window->begin; k < window->end; k++)
-    memset(vxm_window_row(window, 0, k), 0,
-           window->row_words * (size_t)window->middle_dim * sizeof *window->words);
+  return make_slab(engine, slab, work->job, work->passes, VXM_GL_RESULT, error);
 }
 
 vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_parity_union_job *job,
@@ -106,7 +100,7 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
     return vxm_fail_to_keep(base, error);
   if (job->part_begin >= job->part_end) {
     if (job->fresh && !base->keeps) /* what stays began as zeros */
-      clear(window);
+      vxm_window_clear(window, window->begin, window->end);
     return VXM_OK;
   }
   vxm_status status = vxm_gl_enter(&engine->context, error);
@@ -119,7 +113,7 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
     status = clear_touched(engine, parts, error);
   unite_work work = {job, &passes};
   if (status == VXM_OK)
-    status = vxm_gl_each_tile(engine, window, !job->fresh, unite_tile, &work, error);
+    status = vxm_gl_each_slab(engine, window, !job->fresh, unite_slab, &work, error);
   if (status == VXM_OK && job->has_voxels)
     status = take_touched(engine, job->has_voxels, parts, error);
   vxm_disjoint_passes_destroy(&passes);
@@ -146,21 +140,21 @@ static voter_set voters_of(const vxm_vote_job *job) {
 
 /** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
  */
-static vxm_status make_voter(vxm_opengl *engine, const vxm_slice_job *tile, const voter_set *b, int v,
+static vxm_status make_voter(vxm_opengl *engine, const vxm_slab *slab, const voter_set *b, int v,
                              vxm_error *error) {
-  vxm_parity_union_job job = vxm_voter(b->job, tile->window, v);
+  vxm_parity_union_job job = vxm_voter(b->job, slab->window, v);
   vxm_disjoint_passes passes = {0};
   vxm_progress_part before = vxm_progress_enter((double)v / b->count, (v + 1.0) / b->count);
-  vxm_status status = create_passes(&passes, engine, tile->window, &job, error);
+  vxm_status status = create_passes(&passes, engine, slab->window, &job, error);
   if (status == VXM_OK)
-    status = make_tile(engine, tile, &job, &passes, b->words[v], error);
+    status = make_slab(engine, slab, &job, &passes, b->words[v], error);
   vxm_disjoint_passes_destroy(&passes);
   vxm_progress_leave(before);
   return status;
 }
 
-static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, const voter_set *b,
-                              vxm_vote rule, vxm_error *error) {
+static vxm_status count_votes(vxm_opengl *engine, const vxm_slab *slab, const voter_set *b, vxm_vote rule,
+                              vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   vxm_status status = vxm_gl_use(engine, VXM_GL_VOTE, error);
   if (status != VXM_OK)
@@ -171,9 +165,9 @@ static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, con
   vxm_gl_bind(engine, 6, b->words[2]);
   vxm_gl_bind(engine, 7, b->words[3]);
   vxm_gl_bind(engine, 2, VXM_GL_TALLY);
-  gl->Uniform1ui(0, (GLuint)(2 * tile->words));
+  gl->Uniform1ui(0, (GLuint)(2 * slab->words));
   gl->Uniform1ui(1, rule == VXM_VOTE_MAJORITY ? 1 : rule == VXM_VOTE_ANY ? 2 : 0);
-  vxm_gl_dispatch(gl, 2 * tile->words, false);
+  vxm_gl_dispatch(gl, 2 * slab->words, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return vxm_gl_check(gl, "opengl: counting votes", error);
 }
@@ -184,17 +178,17 @@ typedef struct election {
   vxm_vote_tally *tally;
 } election;
 
-static vxm_status elect_tile(vxm_opengl *engine, const vxm_slice_job *tile, void *payload, vxm_error *error) {
+static vxm_status elect_slab(vxm_opengl *engine, const vxm_slab *slab, void *payload, vxm_error *error) {
   const election *e = payload;
   uint32_t counted[2] = {0, 0};
-  vxm_status status = engine->base.keeps ? vxm_gl_tile_bring(engine, tile, error)
-                                         : vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
+  vxm_status status = engine->base.keeps ? vxm_gl_slab_bring(engine, slab, error)
+                                         : vxm_gl_slab_upload(engine, VXM_GL_RESULT, slab, error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_TALLY, counted, sizeof counted, error);
   for (int v = 0; v < e->voters.count && status == VXM_OK; v++)
-    status = make_voter(engine, tile, &e->voters, v, error);
+    status = make_voter(engine, slab, &e->voters, v, error);
   if (status == VXM_OK)
-    status = count_votes(engine, tile, &e->voters, e->job->rule, error);
+    status = count_votes(engine, slab, &e->voters, e->job->rule, error);
   if (status == VXM_OK)
     status = vxm_gl_download(engine, VXM_GL_TALLY, counted, sizeof counted, error);
   e->tally->contested += counted[0];
@@ -216,7 +210,7 @@ vxm_status vxm_gl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
     status = clear_touched(engine, parts, error);
   election e = {job, voters_of(job), tally};
   if (status == VXM_OK)
-    status = vxm_gl_each_tile(engine, window, false, elect_tile, &e, error);
+    status = vxm_gl_each_slab(engine, window, false, elect_slab, &e, error);
   if (status == VXM_OK && job->has_voxels)
     status = take_touched(engine, job->has_voxels, parts, error);
   vxm_gl_leave(&engine->context);

@@ -26,15 +26,15 @@ vxm_status vxm_gl_device_voxels_begin(vxm_engine *engine, const vxm_window *wind
 vxm_status vxm_gl_device_voxels_end(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
                                     const vxm_window *window, vxm_error *error);
 /** Puts what is in VXM_GL_RESULT where it belongs in a window that stays. */
-vxm_status vxm_gl_tile_stay(vxm_opengl *engine, const vxm_slice_job *tile, vxm_error *error);
+vxm_status vxm_gl_slab_stay(vxm_opengl *engine, const vxm_slab *slab, vxm_error *error);
 /** The other way. */
-vxm_status vxm_gl_tile_bring(vxm_opengl *engine, const vxm_slice_job *tile, vxm_error *error);
+vxm_status vxm_gl_slab_bring(vxm_opengl *engine, const vxm_slab *slab, vxm_error *error);
 
-/** Makes the words of a tile in VXM_GL_RESULT. */
-typedef vxm_status (*vxm_gl_tile_fn)(vxm_opengl *engine, const vxm_slice_job *tile, void *payload,
+/** Makes the words of a slab in VXM_GL_RESULT. */
+typedef vxm_status (*vxm_gl_slab_fn)(vxm_opengl *engine, const vxm_slab *slab, void *payload,
                                      vxm_error *error);
-/** Makes a window tile by tile, and takes each back while the next is made; `is_or`: adds to the window. */
-vxm_status vxm_gl_each_tile(vxm_opengl *engine, const vxm_window *window, bool is_or, vxm_gl_tile_fn make,
+/** Makes a window slab by slab, and takes each back while the next is made; `is_or`: adds to the window. */
+vxm_status vxm_gl_each_slab(vxm_opengl *engine, const vxm_window *window, bool is_or, vxm_gl_slab_fn make,
                             void *payload, vxm_error *error);
 
 #endif

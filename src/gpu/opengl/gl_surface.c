@@ -7,14 +7,14 @@ enum { FEW_COLUMNS = 32, LARGE_HEADER = 4 };
 
 /** The uniform block of shaders/touching.glsl. */
 typedef struct surface_job {
-  vxm_slice_job_surface tile;
+  vxm_slab_surface slab;
   int32_t view[4];
 } surface_job;
 
-static surface_job job_of(const vxm_opengl *engine, const vxm_surface *surface, const vxm_slice_job *tile,
+static surface_job job_of(const vxm_opengl *engine, const vxm_surface *surface, const vxm_slab *slab,
                           vxm_surface_kind kind) {
-  surface_job job = {.tile = vxm_slice_job_surface_of(tile, surface, kind)};
-  job.tile.few_columns = engine->can_pull_late ? FEW_COLUMNS : UINT32_MAX;
+  surface_job job = {.slab = vxm_slab_surface_of(slab, surface, kind)};
+  job.slab.few_columns = engine->can_pull_late ? FEW_COLUMNS : UINT32_MAX;
   return job;
 }
 
@@ -30,7 +30,7 @@ static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *er
   static const uint32_t header[LARGE_HEADER] = {0, 1, 0, 0};
   const vxm_gl *gl = &engine->context.gl;
   vxm_status status = vxm_gl_reserve(
-      engine, VXM_GL_LARGE, (LARGE_HEADER + (size_t)job->tile.triangle_count) * sizeof(uint32_t), error);
+      engine, VXM_GL_LARGE, (LARGE_HEADER + (size_t)job->slab.triangle_count) * sizeof(uint32_t), error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_LARGE, header, sizeof header, error);
   if (status == VXM_OK)
@@ -40,7 +40,7 @@ static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *er
   if (status != VXM_OK)
     return status;
   bind(engine);
-  vxm_gl_dispatch(gl, job->tile.triangle_count, false);
+  vxm_gl_dispatch(gl, job->slab.triangle_count, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return VXM_OK;
 }
@@ -50,7 +50,7 @@ static vxm_status draw(vxm_opengl *engine, surface_job *job, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   int64_t most = engine->base.info.viewport, longest = 0;
   for (int a = 0; a < 3; a++)
-    longest = vxm_max(longest, job->tile.last[a]);
+    longest = vxm_max(longest, job->slab.last[a]);
   vxm_status status = vxm_gl_use(engine, VXM_GL_DRAW_SURFACE, error);
   if (status != VXM_OK)
     return status;
@@ -79,15 +79,15 @@ typedef struct drawing {
   bool is_fresh;
 } drawing;
 
-static vxm_status draw_tile(vxm_opengl *engine, const vxm_slice_job *tile, void *payload, vxm_error *error) {
+static vxm_status draw_slab(vxm_opengl *engine, const vxm_slab *slab, void *payload, vxm_error *error) {
   const drawing *d = payload;
   const vxm_gl *gl = &engine->context.gl;
-  surface_job job = job_of(engine, d->surface, tile, d->kind);
-  vxm_status status = vxm_gl_reserve(engine, VXM_GL_RESULT, tile->words * sizeof(uint64_t), error);
+  surface_job job = job_of(engine, d->surface, slab, d->kind);
+  vxm_status status = vxm_gl_reserve(engine, VXM_GL_RESULT, slab->words * sizeof(uint64_t), error);
   if (status != VXM_OK)
     return status;
   if (engine->base.keeps && !d->is_fresh)
-    status = vxm_gl_tile_bring(engine, tile, error);
+    status = vxm_gl_slab_bring(engine, slab, error);
   else {
     gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_RESULT].name);
     gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
@@ -99,8 +99,8 @@ static vxm_status draw_tile(vxm_opengl *engine, const vxm_slice_job *tile, void 
   if (status == VXM_OK)
     status = vxm_gl_check(gl, "opengl: drawing a surface", error);
   return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface",
-                                         (double)(tile->end - tile->window->begin) /
-                                             (double)(tile->window->end - tile->window->begin),
+                                         (double)(slab->end - slab->window->begin) /
+                                             (double)(slab->window->end - slab->window->begin),
                                          error)
                           : status;
 }
@@ -115,7 +115,7 @@ vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vx
   bool needs_host = base->keeps && engine->device_cache.oversized_surface.count > 0;
   drawing d = {surface, kind, is_fresh};
   if (status == VXM_OK && !needs_host)
-    status = vxm_gl_each_tile(engine, window, !is_fresh, draw_tile, &d, error);
+    status = vxm_gl_each_slab(engine, window, !is_fresh, draw_slab, &d, error);
   vxm_gl_leave(&engine->context);
   if (status == VXM_OK && needs_host)
     return vxm_fail_to_keep(base, error);

@@ -37,17 +37,17 @@ typedef enum vxm_gl_buffer_id {
   VXM_GL_ORIGINALS = VXM_CACHED_ORIGINALS,
   VXM_GL_ENTRIES = VXM_CACHED_ENTRIES,
   VXM_GL_NOISE = VXM_CACHED_NOISE,
-  VXM_GL_FLIPS = VXM_CACHED_COUNT, /**< a bit per voxel of a tile; zero between uses */
+  VXM_GL_FLIPS = VXM_CACHED_COUNT, /**< a bit per voxel of a slab; zero between uses */
   VXM_GL_LARGE,                    /**< the indirect draw, and its triangles */
   VXM_GL_JOB,                      /**< vxm_gl_job */
-  VXM_GL_RESULT,                   /**< what is inside, a bit per voxel of a tile */
+  VXM_GL_RESULT,                   /**< what is inside, a bit per voxel of a slab */
   VXM_GL_VOTER_X,                  /**< four of them */
   VXM_GL_VOTER_T = VXM_GL_VOTER_X + 3,
   VXM_GL_TALLY,
   VXM_GL_RANDOM, /**< the circular buffer of displacements of slices */
   VXM_GL_TOUCHED,
   VXM_GL_STAYING, /**< the bits of a window that stays */
-  VXM_GL_STAGING, /**< two, mapped while the next tile is drawn */
+  VXM_GL_STAGING, /**< two, mapped while the next slab is drawn */
   VXM_GL_STAGING2,
   VXM_GL_BUFFERS
 } vxm_gl_buffer_id;
@@ -59,7 +59,7 @@ typedef struct vxm_gl_buffer {
 
 /** The uniform block of shaders/job.glsl. */
 typedef struct vxm_gl_job {
-  vxm_slice_job_columns columns;
+  vxm_slab_columns columns;
   int32_t view[4];
 } vxm_gl_job;
 
@@ -153,24 +153,24 @@ vxm_status vxm_gl_download(vxm_opengl *engine, vxm_gl_buffer_id id, void *out, s
 
 void vxm_gl_presence_release(vxm_opengl *engine);
 
-/* ---- Tiles (gl_tiles.c) ---- */
+/* ---- Slabs (gl_tiles.c) ---- */
 
-/** How many slices of a window fit a tile. @return VXM_OK; VXM_ERROR_RANGE if not even one does */
-vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
+/** How many slices of a window fit a slab. @return VXM_OK; VXM_ERROR_RANGE if not even one does */
+vxm_status vxm_gl_slab_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
                               vxm_error *error);
-/** Puts the words of a tile into a buffer. */
-vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_slice_job *tile,
+/** Puts the words of a slab into a buffer. */
+vxm_status vxm_gl_slab_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_slab *slab,
                               vxm_error *error);
 
-/** A tile on its way back. Start from {0}. */
+/** A slab on its way back. Start from {0}. */
 typedef struct vxm_gl_return {
-  vxm_slice_job tile;
+  vxm_slab slab;
   bool is_or;   /**< added to the window's words */
   GLsync fence; /**< NULL: none is under way */
   int staging;  /**< 0 or 1 */
 } vxm_gl_return;
 
-/** Begins to take back a tile that lies in VXM_GL_RESULT. */
+/** Begins to take back a slab that lies in VXM_GL_RESULT. */
 vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error);
 /** Waits for it and moves it into the window. Does nothing if none is under way. */
 vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error);
@@ -178,18 +178,18 @@ vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error 
 /* ---- Methods ---- */
 
 /** Notes which parts of a pass have bits in VXM_GL_FLIPS. */
-vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_disjoint_passes *passes,
+vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_slab *slab, const vxm_disjoint_passes *passes,
                         size_t pass, vxm_error *error);
 
 /** Parity of the job's parts along its axis, united, into VXM_GL_RESULT or a voter's buffer (gl_columns.c).
  * The passes are those of the job, and on the device. */
-vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                           const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
 
 /** Whether the job's triangles close all of its parts, as tetrahedra need. */
 bool vxm_gl_can_slice(const vxm_parity_union_job *job);
 /** The XOR of tetrahedra for such a job (gl_slices.c). The apexes have been placed. */
-vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slab *slab, const vxm_parity_union_job *job,
                          const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
 
 #endif

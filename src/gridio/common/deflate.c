@@ -27,7 +27,6 @@ struct vxm_deflater {
   z_stream z;
   vxm_context *context;
   vxm_output *output;
-  uint64_t written;
 };
 
 vxm_status vxm_deflater_create(vxm_deflater **out, vxm_context *context, vxm_output *output,
@@ -60,7 +59,6 @@ static void run(vxm_deflater *d, int flush) {
     d->z.avail_out = ROOM;
     deflate(&d->z, flush);
     vxm_output_advance(d->output, ROOM - d->z.avail_out);
-    d->written += ROOM - d->z.avail_out;
   } while (d->z.avail_out == 0);
 }
 
@@ -81,10 +79,6 @@ void vxm_deflater_end(vxm_deflater *d) {
   d->z.next_in = (const unsigned char *)"";
   d->z.avail_in = 0;
   run(d, Z_FINISH);
-}
-
-uint64_t vxm_deflater_written(const vxm_deflater *d) {
-  return d->written;
 }
 
 void vxm_deflater_destroy(vxm_deflater *d) {
@@ -245,11 +239,6 @@ void vxm_deflater_write(vxm_deflater *deflater, const void *data, size_t size) {
 
 void vxm_deflater_end(vxm_deflater *deflater) {
   (void)deflater;
-}
-
-uint64_t vxm_deflater_written(const vxm_deflater *deflater) {
-  (void)deflater;
-  return 0;
 }
 
 void vxm_deflater_destroy(vxm_deflater *deflater) {

@@ -20,8 +20,6 @@ void vxm_deflater_write(vxm_deflater *deflater, const void *data, size_t size);
 void vxm_deflater_end(vxm_deflater *deflater);
 /** NULL is allowed. */
 void vxm_deflater_destroy(vxm_deflater *deflater);
-/** What was written so far, compressed. */
-uint64_t vxm_deflater_written(const vxm_deflater *deflater);
 /** Memory that one takes, about. */
 #define VXM_DEFLATE_BYTES (UINT64_C(270) << 10)
 

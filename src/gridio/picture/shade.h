@@ -6,15 +6,15 @@
 #include "gridio/picture/raycast.h"
 #include "gridio/picture/vec3.h"
 
-/**
- * Scene coordinates are voxel coordinates times `step`, so that the longest side of the grid is 1 and angles
- * are those of the model.
- */
 /** The linear colour of a set voxel. */
 typedef vxm_ray_vec3 (*vxm_paint_fn)(const void *payload, const int64_t voxel[3]);
 
 enum { VXM_SCENE_TURNS = 256 };
 
+/**
+ * What is looked at. Scene coordinates are voxel coordinates times `step`, so that the longest side of the
+ * grid is 1 and angles are those of the model.
+ */
 typedef struct vxm_scene {
   const vxm_grid *grid;
   vxm_paint_fn paint;  /**< NULL = all voxels have one colour */

@@ -18,8 +18,8 @@ static vxm_status adopt(vxm_repair_state *state, vxm_soup *soup, vxm_error *erro
 
 /**
  * Makes the faces a manifold: cuts them apart, on vertices of their own at the same positions, where an edge
- * or vertex has too many. No face is lost; a
- * polygon that touches itself becomes triangles. What is manifold already stays as it is.
+ * or vertex has too many. No face is lost; a polygon that touches itself becomes triangles. What is manifold
+ * already stays as it is.
  */
 vxm_status vxm_pass_separation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;

@@ -215,7 +215,21 @@ static vxm_status choose_colors(vxm_blocks *out, vxm_error *error) {
   return status;
 }
 
-vxm_status vxm_blocks_make(vxm_blocks *out, const vxm_field *field, vxm_error *error) {
+static void destroy_blocks(vxm_blocks *blocks) {
+  vxm_context *context = blocks->field->context;
+  vxm_free(context, blocks->names);
+  vxm_free(context, blocks->numbers);
+  vxm_free(context, blocks->ids);
+  blocks->names = NULL;
+  blocks->numbers = blocks->ids = NULL;
+}
+
+/**
+ * Chooses the blocks of a field that has been checked, with the names and the axis of its style: bits take
+ * the first name, or stone; labels the names in turn, or the dyed blocks; colours the nearest block. The
+ * field is used, not copied.
+ */
+static vxm_status make_blocks(vxm_blocks *out, const vxm_field *field, vxm_error *error) {
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_error local = VXM_ERROR_INIT;
   size_t air;
@@ -233,19 +247,10 @@ vxm_status vxm_blocks_make(vxm_blocks *out, const vxm_field *field, vxm_error *e
                                            : choose_labels(out, field->style.blocks, &range, &local);
   }
   if (status != VXM_OK) {
-    vxm_blocks_destroy(out);
+    destroy_blocks(out);
     vxm_error_pass(error, &local);
   }
   return status;
-}
-
-void vxm_blocks_destroy(vxm_blocks *blocks) {
-  vxm_context *context = blocks->field->context;
-  vxm_free(context, blocks->names);
-  vxm_free(context, blocks->numbers);
-  vxm_free(context, blocks->ids);
-  blocks->names = NULL;
-  blocks->numbers = blocks->ids = NULL;
 }
 
 vxm_status vxm_blocks_write(vxm_output *output, const vxm_field *field,
@@ -253,11 +258,11 @@ vxm_status vxm_blocks_write(vxm_output *output, const vxm_field *field,
                                                 vxm_error *error),
                             vxm_error *error) {
   vxm_blocks blocks;
-  vxm_status status = vxm_blocks_make(&blocks, field, error);
+  vxm_status status = make_blocks(&blocks, field, error);
   if (status != VXM_OK)
     return status;
   status = write(output, &blocks, error);
-  vxm_blocks_destroy(&blocks);
+  destroy_blocks(&blocks);
   return status;
 }
 

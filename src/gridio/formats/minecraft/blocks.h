@@ -39,14 +39,6 @@ vxm_status vxm_blocks_check_names(const char *names, vxm_error *error);
 /** Whether a field can be blocks: bits, labels from 0 to 65535, or colours. @return VXM_OK,
  * VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE */
 vxm_status vxm_blocks_check_field(const vxm_field *field, const char *path, vxm_error *error);
-/**
- * Chooses the blocks of a field that has been checked, with the names and the axis of its style: bits take
- * the first name, or stone; labels the names in turn, or the dyed blocks; colours the nearest block. The
- * field is used, not copied.
- */
-vxm_status vxm_blocks_make(vxm_blocks *out, const vxm_field *field, vxm_error *error);
-void vxm_blocks_destroy(vxm_blocks *blocks);
-
 /** Makes blocks of a field, and writes them by a function. */
 vxm_status vxm_blocks_write(vxm_output *output, const vxm_field *field,
                             vxm_status (*write)(vxm_output *output, const vxm_blocks *blocks,

@@ -18,7 +18,8 @@ bool vxm_vox_take(int32_t *out, const unsigned char **at, const unsigned char *e
   return true;
 }
 
-bool vxm_vox_take_text(const char **text, size_t *size, const unsigned char **at, const unsigned char *end) {
+/** Takes a text, which is no C text. */
+static bool take_text(const char **text, size_t *size, const unsigned char **at, const unsigned char *end) {
   int32_t length;
   if (!vxm_vox_take(&length, at, end) || length < 0 || end - *at < length)
     return false;
@@ -34,7 +35,7 @@ bool vxm_vox_skip_pairs(const unsigned char **at, const unsigned char *end) {
   size_t size;
   bool is_whole = vxm_vox_take(&count, at, end) && count >= 0;
   for (int32_t i = 0; is_whole && i < count; i++)
-    is_whole = vxm_vox_take_text(&text, &size, at, end) && vxm_vox_take_text(&text, &size, at, end);
+    is_whole = take_text(&text, &size, at, end) && take_text(&text, &size, at, end);
   return is_whole;
 }
 
@@ -46,7 +47,7 @@ bool vxm_vox_find(char *out, size_t room, const unsigned char *at, const unsigne
   if (!vxm_vox_take(&count, &at, end))
     return false;
   for (int32_t i = 0; i < count; i++) {
-    if (!vxm_vox_take_text(&name, &name_size, &at, end) || !vxm_vox_take_text(&value, &size, &at, end))
+    if (!take_text(&name, &name_size, &at, end) || !take_text(&value, &size, &at, end))
       return false;
     if (name_size != strlen(key) || memcmp(name, key, name_size) != 0)
       continue;

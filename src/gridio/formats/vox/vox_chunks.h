@@ -41,8 +41,6 @@ vxm_vox_node *vxm_vox_node_find(const vxm_vox_file *file, int32_t number);
 
 /** Takes a number; false at the end. */
 bool vxm_vox_take(int32_t *out, const unsigned char **at, const unsigned char *end);
-/** Takes a text, which is no C text. */
-bool vxm_vox_take_text(const char **text, size_t *size, const unsigned char **at, const unsigned char *end);
 /** Steps over a dictionary. */
 bool vxm_vox_skip_pairs(const unsigned char **at, const unsigned char *end);
 /** The value of a key in the dictionary at `at`, cut to the room of `out`; false if there is none. */

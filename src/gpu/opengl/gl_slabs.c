@@ -4,12 +4,12 @@
 
 #include <string.h>
 
-/** Two tiles under way, their flips and four voters are held: no more than needed to keep a device busy. */
-static const int64_t tile_bytes_most = INT64_C(64) << 20;
+/** Two slabs under way, their flips and four voters are held: no more than needed to keep a device busy. */
+static const int64_t slab_bytes_most = INT64_C(64) << 20;
 static const int64_t slice_bytes_most = INT64_C(256) << 20;
 
-/** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
-static int64_t tile_share(const vxm_opengl *engine) {
+/** What a slab may take under the memory limit: of what is left, and what its buffers have already. */
+static int64_t slab_share(const vxm_opengl *engine) {
   enum { BUFFERS = 9 /**< flips, result, four voters, two staging buffers; and one spare */ };
   static const vxm_gl_buffer_id own[] = {VXM_GL_FLIPS,       VXM_GL_RESULT,      VXM_GL_VOTER_X,
                                          VXM_GL_VOTER_X + 1, VXM_GL_VOTER_X + 2, VXM_GL_VOTER_X + 3,
@@ -22,11 +22,11 @@ static int64_t tile_share(const vxm_opengl *engine) {
   return (int64_t)(left / BUFFERS);
 }
 
-vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
+vxm_status vxm_gl_slab_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
                               vxm_error *error) {
   int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
-  int64_t most = vxm_min(vxm_min(engine->base.info.block_bytes, tile_bytes_most), tile_share(engine));
-  /* Not all that a block may take; and shaders count the bits of a tile in 32 bits. */
+  int64_t most = vxm_min(vxm_min(engine->base.info.block_bytes, slab_bytes_most), slab_share(engine));
+  /* Not all that a block may take; and shaders count the bits of a slab in 32 bits. */
   if (slice > engine->base.info.block_bytes / 2 || slice > slice_bytes_most)
     return vxm_fail(
         error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
@@ -36,25 +36,25 @@ vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_
   return VXM_OK;
 }
 
-vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_slice_job *tile,
+vxm_status vxm_gl_slab_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_slab *slab,
                               vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
-  size_t bytes = vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
-  vxm_status status = vxm_gl_reserve(engine, id, tile->words * sizeof(uint64_t), error);
+  size_t bytes = vxm_slab_slice_words(slab) * sizeof(uint64_t);
+  vxm_status status = vxm_gl_reserve(engine, id, slab->words * sizeof(uint64_t), error);
   if (status != VXM_OK)
     return status;
-  size_t all = (size_t)(tile->end - tile->begin) * bytes;
+  size_t all = (size_t)(slab->end - slab->begin) * bytes;
   GLuint sent = vxm_gl_send_begin(gl, NULL, all);
-  for (int64_t k = tile->begin; k < tile->end; k++)
-    gl->BufferSubData(GL_COPY_READ_BUFFER, (GLintptr)((size_t)(k - tile->begin) * bytes), (GLsizeiptr)bytes,
-                      vxm_slice_job_slice_at(tile, tile->window->words, k));
+  for (int64_t k = slab->begin; k < slab->end; k++)
+    gl->BufferSubData(GL_COPY_READ_BUFFER, (GLintptr)((size_t)(k - slab->begin) * bytes), (GLsizeiptr)bytes,
+                      vxm_slab_slice_at(slab, slab->window->words, k));
   vxm_gl_send_end(engine, sent, id, 0, all);
   return vxm_gl_check(gl, "opengl: sending voxels", error);
 }
 
 vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
-  size_t bytes = back->tile.words * sizeof(uint64_t);
+  size_t bytes = back->slab.words * sizeof(uint64_t);
   vxm_gl_buffer_id staging = (vxm_gl_buffer_id)(VXM_GL_STAGING + back->staging);
   vxm_status status = vxm_gl_reserve(engine, staging, bytes, error);
   if (status != VXM_OK)
@@ -80,12 +80,12 @@ vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error 
          (!gl->GetGraphicsResetStatus || gl->GetGraphicsResetStatus() == GL_NO_ERROR));
   gl->DeleteSync(back->fence);
   back->fence = NULL;
-  const vxm_slice_job *tile = &back->tile;
-  size_t bytes = tile->words * sizeof(uint64_t);
+  const vxm_slab *slab = &back->slab;
+  size_t bytes = slab->words * sizeof(uint64_t);
   gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_STAGING + back->staging].name);
   const uint64_t *data = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
   if (data) {
-    vxm_slice_job_take(tile, tile->window->words, data, back->is_or);
+    vxm_slab_take(slab, slab->window->words, data, back->is_or);
     gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
   }
   vxm_status status = vxm_gl_check(gl, "opengl: reading voxels", error);
