@@ -212,9 +212,11 @@ bool batch_manifest_finish(batch_manifest *manifest, batch_error *error) {
     if (strcmp(manifest->items[i].id, manifest->items[i + 1].id) == 0)
       return batch_fail(error, "%s stands twice among the inputs; give each an id of its own",
                         manifest->items[i].id);
-  for (int64_t i = 0; i < manifest->count; i++)
+  for (int64_t i = 0; i < manifest->count; i++) {
+    manifest->items[i].number = i;
     if (!place(&manifest->items[i]))
       return batch_fail(error, "out of memory for the list of meshes: free some");
+  }
   return name_outputs(manifest, error);
 }
 

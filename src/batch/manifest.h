@@ -17,6 +17,7 @@ typedef struct batch_item {
   char *options; /**< words of its own, behind those of the batch; NULL = none */
   uint64_t bytes;
   int64_t modified; /**< of the file or archive, in nanoseconds since 1970 */
+  int64_t number;   /**< its place among all, of a shard or sample, too: from 0, in the order of ids */
 
   /* What has come of it. */
   batch_status status;

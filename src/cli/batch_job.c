@@ -78,11 +78,44 @@ static bool check_own(const batch_words *words, int first, batch_error *error) {
   return true;
 }
 
+/** The number behind "--model" in words from the first on, 0 without; false where it is none. */
+static bool model_in(const batch_words *words, int first, int64_t *model) {
+  static const char option[] = "--model";
+  size_t length = strlen(option);
+  *model = 0;
+  for (int w = first; w < words->count; w++) {
+    const char *word = words->words[w], *value = NULL;
+    if (strncmp(word, option, length) != 0)
+      continue;
+    if (word[length] == '=')
+      value = word + length + 1;
+    else if (!word[length])
+      value = w + 1 < words->count ? words->words[++w] : "";
+    if (value && !cli_read_integer(model, value, 0, UINT32_MAX))
+      return false;
+  }
+  return true;
+}
+
+/** Models are counted up from the number that the options have, as 'voxmend augment' counts those of a
+ * folder: they would all be turned alike else. It depends on the plan alone, not on what is made when. */
+static bool add_model(batch_words *words, int first, const batch_item *item, batch_error *error) {
+  int64_t model;
+  if (!model_in(words, first, &model))
+    return true; /* augment says what is wrong with it */
+  model += item->number;
+  if (model > UINT32_MAX)
+    return batch_fail(error, "its model number, %" PRId64 ", goes beyond 4294967295: lower --model", model);
+  return batch_words_add(words, "--model=%" PRId64, model) || batch_fail(error, "out of memory: free some");
+}
+
 /** The options of a product, and those of the item behind them. */
 static bool add_options(batch_words *words, const batch_request *given, batch_product product,
                         const batch_item *item, batch_error *error) {
+  int before = words->count;
   if (product != BATCH_GRID)
-    return batch_words_split(words, given->products[product], error);
+    return batch_words_split(words, given->products[product], error) &&
+           (product != BATCH_VARIANTS || add_model(words, before, item, error));
   for (int w = 0; w < given->grid_options.count; w++)
     if (!batch_words_add(words, "%s", given->grid_options.words[w]))
       return batch_fail(error, "out of memory: free some");

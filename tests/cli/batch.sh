@@ -106,6 +106,24 @@ run 'grep -o "\"picture\":\"" once/index.html | wc -l'
 # Folders of variants have links in them.
 run 'voxmend batch splits -o varied --no-grid --augment "-n 2 -r 8" --pictures 0; voxmend batch verify varied; find varied -name "*.rle" | sort'
 run 'find varied -name "*.rle" -links 1; find varied -name "*.rle" -links 2 | wc -l; find varied -name "*.rle" -links 3 | wc -l'
+# Model numbers are those of 'augment FOLDER', whatever is made when, and where: in a shard, or anew.
+mkdir -p kinds/a kinds/b
+cp in/cube.off kinds/a/
+cp in/sphere.off kinds/b/
+cp in/torus.off kinds/
+options='-n 2 -r 8 --rotate any --scale 0.4 --format npy --model 5'
+each_variant() {
+  (cd counted && find . -name '*.npy' | sort) | while read -r file; do
+    cmp "counted/$file" "$1/${file%/*}.variants/${file##*/}"
+  done
+}
+run 'voxmend augment kinds -o counted $options -q && cut -f 1,2 counted/models.tsv'
+run 'voxmend batch kinds -o numbered --no-grid --augment "$options" -q && each_variant numbered && grep -oE "\"model\":[0-9]+" numbered/.batch/journal-0-of-1.jsonl | sort'
+run 'rm -r numbered/torus.variants && voxmend batch kinds -o numbered --no-grid --augment "$options" -q && each_variant numbered'
+run 'for s in 2 0 1; do voxmend batch kinds -o sharded --no-grid --augment "$options" --shard $s/3 -q; done; each_variant sharded'
+run 'voxmend batch kinds -o beyond --no-grid --augment "-n 2 -r 8 --model 4294967294" --pictures 0 -q; cut -f 1-4 beyond/failures.tsv'
+printf 'OFF\n3 x\n' >kinds/b/z.off
+run 'voxmend batch kinds -o repeated --no-grid --augment "$options" --pictures 0 -q; cut -f 5 repeated/failures.tsv'
 # Other products.
 run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --format obj" --remesh "-r 8" --augment "-n 2 -r 8 --format npy" --view "--size 40x30" --pictures 0'
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'
