@@ -44,7 +44,7 @@ static batch_item **with_equal_size(const run *r, int64_t *count) {
   int64_t all = 0;
   *count = 0;
   for (int64_t i = 0; list && i < r->manifest->count; i++)
-    if (is_self_contained(&r->manifest->items[i]))
+    if (is_self_contained(&r->manifest->items[i]) && !r->manifest->items[i].refers_to_others)
       list[all++] = &r->manifest->items[i];
   if (list)
     qsort(list, (size_t)all, sizeof *list, by_size);
@@ -83,6 +83,7 @@ static batch_turn next_hashes(run *r, void *payload) {
     chunk[count++] = index;
     bytes += h->items[h->next]->bytes;
     names += strlen(h->items[h->next]->path);
+    names += h->items[h->next]->options ? strlen(h->items[h->next]->options) : 0;
   }
   if (count == 0)
     return BATCH_NOTHING_LEFT;

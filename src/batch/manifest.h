@@ -27,7 +27,8 @@ typedef struct batch_item {
   bool is_misnamed; /**< its name is no UTF-8, which requests and journals are: the path may not be that of
                        the file */
   bool is_in_flight;
-  int64_t original; /**< the item whose bytes it has; -1 = none */
+  bool refers_to_others; /**< what it means depends on files beside it, by a journal: it has no duplicates */
+  int64_t original;      /**< the item whose bytes it has; -1 = none */
 } batch_item;
 
 typedef struct batch_manifest {

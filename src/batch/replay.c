@@ -36,6 +36,7 @@ static void take_end(const replay *r, batch_item *item, const json_t *record) {
   bool again = status == BATCH_STATUSES || r->settings->retry[status] ||
                (batch_is_done(status) && !has_outputs(r->settings->output, record));
   item->status = again ? BATCH_PENDING : status;
+  item->refers_to_others = json_is_true(json_object_get(record, "refers_to_others"));
 }
 
 /** It is another file from then on. */

@@ -207,12 +207,15 @@ static bool digest_input(json_t *result, const json_t *job) {
   char digest[BATCH_DIGEST];
   uint64_t bytes;
   bool is_member = json_object_get(job, "member") != NULL;
-  bool good = is_member ? batch_digest_open(digest, &bytes, STDIN_FILENO)
-                        : batch_digest_file(digest, &bytes, batch_json_text(job, "input"));
+  const char *path = batch_json_text(job, "input");
+  bool good =
+      is_member ? batch_digest_open(digest, &bytes, STDIN_FILENO) : batch_digest_file(digest, &bytes, path);
   if (good) {
     json_object_set_new(result, "sha256", json_string(digest));
     json_object_set_new(result, "bytes", json_integer((json_int_t)bytes));
   }
+  if (good && !is_member && batch_refers_to_others(path, json_is_true(json_object_get(job, "colors"))))
+    json_object_set_new(result, "refers_to_others", json_true());
   return good;
 }
 
@@ -233,13 +236,17 @@ static json_t *make_outputs(const json_t *job, const char *root) {
   return result;
 }
 
-static json_t *digest_files(const json_t *paths) {
+/** Of what is to be compared with others: "" for a file that cannot be read, or that means something else in
+ * another folder. */
+static json_t *digest_files(const json_t *paths, const json_t *options, const batch_maker *maker) {
   json_t *result = json_object(), *digests = json_array(), *path;
   size_t p;
   json_array_foreach(paths, p, path) {
     char digest[BATCH_DIGEST] = "";
     uint64_t bytes;
-    if (!batch_digest_file(digest, &bytes, json_string_value(path)))
+    const char *name = json_string_value(path), *own = json_string_value(json_array_get(options, p));
+    if (batch_refers_to_others(name, batch_reads_colors(maker->given, own)) ||
+        !batch_digest_file(digest, &bytes, name))
       digest[0] = '\0';
     json_array_append_new(digests, json_string(digest));
   }
@@ -262,12 +269,12 @@ static bool say(int descriptor, const char *text) {
 }
 
 int batch_do_job(const char *request, int descriptor, void *payload) {
-  (void)payload;
   json_t *job = json_loads(request, 0, NULL), *result;
   if (!job)
     return 1;
   const json_t *paths = json_object_get(job, "hash");
-  result = paths ? digest_files(paths) : make_outputs(job, batch_json_text(job, "root"));
+  result = paths ? digest_files(paths, json_object_get(job, "options"), payload)
+                 : make_outputs(job, batch_json_text(job, "root"));
   char *text = json_dumps(result, JSON_COMPACT | JSON_REAL_PRECISION(17));
   fflush(NULL);
   return text && say(descriptor, text) ? 0 : 1;

@@ -61,6 +61,14 @@ static bool can_be_viewed(const char *format) {
   return (vxm_grid_format_traits(format) & VXM_FORMAT_READ) != 0;
 }
 
+bool batch_reads_colors(const batch_request *given, const char *options) {
+  bool reads = options && strstr(options, "--col"); /* names may be shortened */
+  for (int w = 0; w < given->grid_options.count; w++)
+    reads = reads || strcmp(given->grid_options.words[w], "--color=mesh") == 0;
+  bool draws_mesh = given->products[BATCH_PICTURE] && (given->no_grid || !can_be_viewed(given->format));
+  return reads || draws_mesh;
+}
+
 /** Options of one mesh may say how its grid is made, and not what is written where. Names may be shortened.
  */
 static bool check_own(const batch_words *words, int first, batch_error *error) {
@@ -198,6 +206,7 @@ json_t *batch_make_job(const batch_item *item, uint64_t memory, void *payload, b
                           json_array(), "outputs", json_array());
   if (item->member)
     json_object_set_new(job, "member", cli_json_text(item->member));
+  json_object_set_new(job, "colors", json_boolean(batch_reads_colors(maker->given, item->options)));
   bool good = job != NULL;
   for (int p = 0; good && p < BATCH_PRODUCTS; p++)
     if (is_wanted(maker->given, (batch_product)p))

@@ -103,6 +103,19 @@ for name in train/a test/b; do cp in/cube.off splits/chair/$name.off; done
 for name in extra/a val/b train/c; do cp in/torus.off splits/chair/$name.off; done
 run 'voxmend batch splits -o once -r 8 -q && grep -o "\"status\":\"duplicate\"[^}]*\"item\":\"[^\"]*\"" once/index.html | sed "s/.*:\"//" | sort'
 run 'grep -o "\"picture\":\"" once/index.html | wc -l'
+# With another .mtl beside them equal bytes are no duplicates where colours are made of them, and are where none are.
+mkdir -p paint/a paint/b
+for folder in a b; do
+  printf 'mtllib m.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >paint/$folder/m.obj
+done
+printf 'newmtl paint\nKd 1 0 0\n' >paint/a/m.mtl
+printf 'newmtl paint\nKd 0 0 1\n' >paint/b/m.mtl
+printf 'path,id,options\na/m.obj,a,--color mesh\nb/m.obj,b,--color mesh\n' >paint/own.csv
+run 'voxmend batch paint -o painted -r 8 --format npy --color mesh --pictures 0 | grep result; cmp painted/a/m.npy painted/b/m.npy'
+run 'voxmend voxelize paint/b/m.obj -o m.npy -r 8 --color mesh -q && cmp m.npy painted/b/m.npy'
+run 'rm painted/b/m.npy && voxmend batch paint -o painted -r 8 --format npy --color mesh --pictures 0 | grep result; cmp m.npy painted/b/m.npy'
+run 'voxmend batch paint/own.csv -o own-paint -r 8 --format npy --pictures 0 | grep result; cmp m.npy own-paint/b.npy'
+run 'voxmend batch paint -o plain -r 8 --format npy --pictures 0 | grep result'
 # Folders of variants have links in them.
 run 'voxmend batch splits -o varied --no-grid --augment "-n 2 -r 8" --pictures 0; voxmend batch verify varied; find varied -name "*.rle" | sort'
 run 'find varied -name "*.rle" -links 1; find varied -name "*.rle" -links 2 | wc -l; find varied -name "*.rle" -links 3 | wc -l'
