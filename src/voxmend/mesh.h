@@ -79,7 +79,8 @@ typedef enum vxm_external {
 /** How a mesh file is read. */
 typedef struct vxm_mesh_read_options {
   size_t size;        /**< as the initializer sets it */
-  const char *format; /**< as vxm_mesh_format says, such as "off" or "step"; NULL = by content, then name */
+  const char *format; /**< as vxm_mesh_format says, such as "off" or "step", or an extension, such as "glb";
+                         NULL = by content, then name */
   double deflection;  /**< STEP and IGES: how far triangles may lie from a curved surface, as a part of the
                          model's diagonal, at most 1; 0 = 0.001 */
   vxm_external external; /**< files that the mesh refers to */

@@ -49,6 +49,16 @@ for archive in a.tar a.tar.gz a.tar.xz a.zip; do
 done
 [ ! -e above.binvox ] && [ ! -e ../above.binvox ] && [ -e from-a.zip/_/_/above.binvox ] || fail "a member leads out of the folder"
 cmp folder/torus.binvox "from-a.zip/stühle/stuhl.binvox" || fail "a name beyond ASCII"
+# What Assimp reads is told of in an archive by its name, as in a folder.
+mkdir scenes
+"$BUILDDIR/samples/generate_samples" scenes
+rm -f scenes/*.off
+if "$VOXMEND" info -q scenes/stool.glb 2>/dev/null; then
+  tar cf scenes.tar -C scenes stool.glb
+  batch scenes -o scenes-folder >/dev/null
+  batch scenes.tar -o scenes-archive >said
+  cmp scenes-folder/stool.binvox scenes-archive/stool.binvox || fail "stool.glb"
+fi
 # A mesh is read without the files beside it, and told so, whatever the option; but what is not wanted is not missed.
 mkdir red
 printf 'mtllib m.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >red/m.obj
