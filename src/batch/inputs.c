@@ -26,8 +26,11 @@ bool batch_is_mesh(const batch_inputs *inputs, const char *name) {
   return is_among(batch_extension(name), inputs->extensions);
 }
 
+const char batch_odd[] = "(pipes, devices, links to nothing or back)", batch_hidden[] = "(hidden files)",
+           batch_leads_out[] = "(names with ..)";
+
 /** Counts a file, and tells once of what kind such files are. */
-static void pass_over_as(batch_manifest *manifest, const char *kind) {
+void batch_pass_over_as(batch_manifest *manifest, const char *kind) {
   char word[48];
   size_t used = strlen(manifest->note);
   manifest->passed_over++;
@@ -41,9 +44,9 @@ static void pass_over_as(batch_manifest *manifest, const char *kind) {
 void batch_pass_over(batch_manifest *manifest, const char *name) {
   const char *extension = batch_extension(name);
   if (*extension)
-    pass_over_as(manifest, extension - 1); /* with its dot */
+    batch_pass_over_as(manifest, extension - 1); /* with its dot */
   else
-    pass_over_as(manifest, "(no extension)");
+    batch_pass_over_as(manifest, "(no extension)");
 }
 
 /** "./a//b" as "a/b" would be found: an id is a name, not a way. */
@@ -123,7 +126,7 @@ static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
     batch_fail_errno(s->error, "%s: cannot read the folder", entry->path);
     break;
   case BATCH_TREE_OTHER:
-    pass_over_as(s->out, "(pipes, devices, links to nothing or back)");
+    batch_pass_over_as(s->out, batch_odd);
     break;
   case BATCH_TREE_LEFT:
     break;

@@ -15,6 +15,7 @@ typedef struct batch_item {
   char *kind;    /**< its class; NULL = none told */
   char *split;   /**< "train" and the like; NULL = none told */
   char *options; /**< words of its own, behind those of the batch; NULL = none */
+  int64_t place; /**< of a member in the archive, from 0; hard links have that of their file */
   uint64_t bytes;
   int64_t modified; /**< of the file or archive, in nanoseconds since 1970 */
   int64_t number;   /**< its place among all, of a shard or sample, too: from 0, in the order of ids */
@@ -48,5 +49,6 @@ int64_t batch_manifest_find(const batch_manifest *manifest, const char *id);
 /** Leaves every n-th, from one on that is counted from 0. */
 void batch_manifest_keep_shard(batch_manifest *manifest, int shard, int shards);
 void batch_manifest_free(batch_manifest *manifest);
+void batch_item_free(batch_item *item);
 
 #endif

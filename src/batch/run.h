@@ -59,6 +59,20 @@ void batch_take_ending(run *r, batch_slot *slot, const batch_ending *ending);
 /** Sets is_broken; the error is told already. */
 bool batch_break(run *r);
 
+/* ---- Members of archives ---- */
+
+/** A member that is asked for. Several items may have one place: hard links. */
+typedef struct batch_wanted {
+  int64_t place, item;
+} batch_wanted;
+
+/** Puts them into the order of the archive. */
+void batch_wanted_sort(batch_wanted *members, int64_t count);
+/** Index of the first of them that has this place, or what would be behind it. */
+int64_t batch_wanted_find(const batch_wanted *members, int64_t count, int64_t place);
+/** The bytes that an unpacked mesh may take in memory. */
+uint64_t batch_member_room(const batch_settings *settings);
+
 /* ---- Duplicates ---- */
 
 /** Digests the files that might be the same as another's, and finds out which are. */
