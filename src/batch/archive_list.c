@@ -28,16 +28,16 @@ static bool no_memory(const listing *l) {
 
 /* ---- Names ---- */
 
-/** "./a//b" and "/a/b" as "a/b": where it would come to lie. False, and a kind to be told, for one that leads
- * out of the folder. */
+/** "./a//b" and "/a/b" as "a/b": where it would come to lie. False, and a kind to be told, for one that no
+ * folder would give: that of a hidden file, or one that leads out of it. */
 static bool take_name(char out[BATCH_MEMBER_MAX], const char *name, const char **kind) {
   size_t used = 0;
   *kind = NULL;
   for (; *name; name += *name == '/') {
     size_t part = strcspn(name, "/");
     bool is_dot = part == 1 && name[0] == '.', is_up = part == 2 && name[0] == '.' && name[1] == '.';
-    if (is_up)
-      *kind = batch_leads_out;
+    if (is_up || (!is_dot && batch_is_hidden(name, part)))
+      *kind = is_up || *kind == batch_leads_out ? batch_leads_out : batch_hidden;
     if (part > 0 && !is_dot) {
       if (used > 0)
         out[used++] = '/';

@@ -81,6 +81,11 @@ static bool add_archive(batch_manifest *out, const batch_inputs *inputs, const c
   return batch_archive_list(out, inputs, &archive, error);
 }
 
+bool batch_is_hidden(const char *part, size_t length) {
+  static const char of_mac[] = "__MACOSX";
+  return part[0] == '.' || (length == strlen(of_mac) && strncmp(part, of_mac, length) == 0);
+}
+
 /* ---- Folders ---- */
 
 /** Going through a folder. */
@@ -112,7 +117,7 @@ static bool add_entry(const search *s, const batch_tree_entry *entry) {
  * sockets, pipes and devices. */
 static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
   search *s = payload;
-  bool is_hidden = entry->depth > 0 && entry->name[0] == '.';
+  bool is_hidden = entry->depth > 0 && batch_is_hidden(entry->name, strlen(entry->name));
   switch (entry->kind) {
   case BATCH_TREE_FOLDER:
     if (s->has_except && entry->info->st_dev == s->except.st_dev && entry->info->st_ino == s->except.st_ino)

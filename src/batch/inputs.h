@@ -26,6 +26,8 @@ void batch_pass_over(batch_manifest *manifest, const char *name);
 /** The same, and of what kind it is. */
 void batch_pass_over_as(batch_manifest *manifest, const char *kind);
 extern const char batch_odd[], batch_hidden[], batch_leads_out[];
+/** Whether a name in a path, of so many letters, is no part of a dataset: ".x", or what macOS adds. */
+bool batch_is_hidden(const char *part, size_t length);
 
 /**
  * Adds the rows of a list (.txt: a path a line) or table (.csv, .tsv: a line of column names first: path, and

@@ -66,15 +66,24 @@ with tarfile.open("odd.tar", "w", format=tarfile.GNU_FORMAT) as archive:
     add(archive, "lost.off", b"", tarfile.LNKTYPE, "gone.off")
     add(archive, "soft.off", b"", tarfile.SYMTYPE, "twice.off")
     add(archive, "../../up.off", sphere)
+    add(archive, "first/.hidden.off", sphere)
+    add(archive, ".git/x.off", sphere)
+    add(archive, "__MACOSX/first/._x.off", b"no mesh")
+with zipfile.ZipFile("mac.zip", "w") as archive:
+    archive.writestr("x.off", sphere)
+    archive.writestr(".y.off", sphere)
+    archive.writestr("__MACOSX/._x.off", b"no mesh")
 END
 batch odd.tar -o odd >said
 cat said
-grep -q '^meshes *4$' said && grep -q '^passed over *4 ' said || fail "odd members"
+grep -q '^meshes *4$' said && grep -q '^passed over *7 ' said || fail "odd members"
 for name in twice:torus first/x:sphere hard:sphere; do
   cmp odd/${name%:*}.binvox folder/${name#*:}.binvox || fail "$name"
 done
 [ "$(sed 1d odd/failures.tsv | cut -f 1-3)" = "$(printf 'other.ply\tunreadable\tread')" ] || fail "another name of a member"
 [ "$(grep -c '"class"' odd/.batch/plan.jsonl)" = 1 ] || fail "a class of a dot"
+batch mac.zip -o mac >said
+grep -q '^meshes *1$' said && grep -q '^passed over *2 .*hidden' said || fail "hidden members"
 # What Assimp reads is told of in an archive by its name, as in a folder.
 mkdir scenes
 "$BUILDDIR/samples/generate_samples" scenes
