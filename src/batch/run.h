@@ -54,6 +54,8 @@ bool batch_give_hashes(run *r, const int64_t *items, int count);
 
 /** Writes an item's end into the journal, and counts it. The record is given away. */
 bool batch_end_item(run *r, int64_t item, batch_status status, json_t *record);
+/** Notes the digest of an item's bytes; "" where they cannot be had, or say too little. */
+void batch_take_hash(run *r, int64_t item, const char *digest);
 /** What a child has said when it ended; NULL where it said nothing that makes sense. */
 void batch_take_ending(run *r, batch_slot *slot, const batch_ending *ending);
 /** Sets is_broken; the error is told already. */

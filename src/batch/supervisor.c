@@ -187,7 +187,7 @@ static int64_t collect_members(const run *r, unpacking *u, int64_t from,
 }
 
 static bool is_wanted_member(const run *r, int64_t i) {
-  return is_waiting(r, i) && r->manifest->items[i].aborted == 0;
+  return is_waiting(r, i) && r->manifest->items[i].original < 0 && r->manifest->items[i].aborted == 0;
 }
 
 static bool is_wanted_alone(const run *r, int64_t i) {

@@ -49,6 +49,38 @@ for archive in a.tar a.tar.gz a.tar.xz a.zip; do
 done
 [ -z "$(find . .. -maxdepth 3 -name 'above*')" ] && grep -q 'passed over *2 .*(names with ..) .txt' said || fail "a member leads out of the folder"
 cmp folder/torus.binvox "from-a.zip/stühle/stuhl.binvox" || fail "a name beyond ASCII"
+# Duplicates are found there as in folders, and between them; in train and test it is the one in train.
+mkdir -p twice/chair/train twice/chair/test
+cp data/cube.off twice/chair/train/a.off
+cp data/cube.off twice/chair/test/b.off
+cp data/torus.off twice/chair/train/c.off
+cp data/cube.off twice/chair/train/d.off
+sed '2s/8/9/' data/cube.off >twice/chair/train/e.off
+duplicates() {
+  sed -n 's/.*"duplicate_of":"\([^"]*\)".*/\1/p' "$1"/.batch/journal-*.jsonl
+}
+batch twice -o twice-folder >/dev/null
+"$TEST_PYTHON" - <<'END'
+import os, tarfile, zipfile
+names = sorted(os.path.relpath(os.path.join(at, n), "twice") for at, _, files in os.walk("twice") for n in files)
+with tarfile.open("twice.tar.gz", "w:gz") as tar, zipfile.ZipFile("twice.zip", "w", zipfile.ZIP_DEFLATED) as packed:
+    for n in names:
+        tar.add("twice/" + n, n)
+        packed.write("twice/" + n, n)
+END
+for archive in twice.tar.gz twice.zip; do
+  batch $archive -o from-$archive >said
+  grep -q '2 duplicate' said || fail "duplicates in $archive"
+  [ "$(duplicates from-$archive)" = "$(duplicates twice-folder)" ] || fail "originals in $archive"
+  (cd twice-folder && find . -name '*.binvox') | while read -r file; do
+    cmp "twice-folder/$file" "from-$archive/$file" || fail "$archive: $file"
+  done
+  rm from-$archive/chair/train/a.binvox
+  batch $archive -o from-$archive >said
+  grep -q '2 duplicate' said && cmp twice-folder/chair/train/a.binvox from-$archive/chair/train/a.binvox || fail "$archive anew"
+done
+batch data/cube.off twice.zip -o across >said
+grep -q '3 duplicate' said || fail "a file and members"
 # Odd members: as if the archive were unpacked and its folder given. What is passed over is counted.
 PYTHONUTF8=1 "$TEST_PYTHON" - <<'END'
 import io, tarfile, zipfile
@@ -76,7 +108,7 @@ with zipfile.ZipFile("mac.zip", "w") as archive:
 END
 batch odd.tar -o odd >said
 cat said
-grep -q '^meshes *4$' said && grep -q '^passed over *7 ' said || fail "odd members"
+grep -q '^meshes *4$' said && grep -q '^passed over *7 ' said && grep -q '1 duplicate' said || fail "odd members"
 for name in twice:torus first/x:sphere hard:sphere; do
   cmp odd/${name%:*}.binvox folder/${name#*:}.binvox || fail "$name"
 done
