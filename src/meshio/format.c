@@ -207,6 +207,7 @@ static vxm_status read_with(vxm_soup **out, vxm_context *context, const unsigned
   vxm_status status = vxm_soup_create(&soup, context, "", error);
   if (status != VXM_OK)
     return status;
+  references->soup = soup;
   unsigned char *text = NULL;
   if (vxm_utf16_is(data, size)) {
     size_t text_size;

@@ -210,6 +210,12 @@ VXM_API const char *vxm_mesh_format(const vxm_mesh *mesh);
 VXM_API int64_t vxm_mesh_warning_count(const vxm_mesh *mesh);
 /** One of them; "" if there is none of this number. */
 VXM_API const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index);
+/** Other files that were opened to read it: buffers of a glTF, and with `colors` .mtl files and textures. 0
+ * of a mesh that another was made into. */
+VXM_API int64_t vxm_mesh_companion_count(const vxm_mesh *mesh);
+/** The name of one as the mesh has it, relative to its folder but for a '/' in front; "" if there is none of
+ * this number. */
+VXM_API const char *vxm_mesh_companion(const vxm_mesh *mesh, int64_t index);
 
 /* ---- Census: what is wrong with a mesh ---- */
 
