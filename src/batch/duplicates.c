@@ -323,7 +323,7 @@ static bool finish_duplicate(run *r, int64_t index, const json_t *of_original) {
   batch_item *item = &r->manifest->items[index];
   const batch_item *original = &r->manifest->items[item->original];
   json_t *record = json_deep_copy(of_original);
-  static const char *const own[] = {"sum", "wall_ms", "cpu_ms", "peak_bytes"};
+  static const char *const own[] = {"sum", "wall_ms", "cpu_ms", "peak_bytes", "companions"};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     json_object_del(record, own[k]);
   json_object_set_new(record, "duplicate_of", batch_json_string(original->id));

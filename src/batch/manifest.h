@@ -29,6 +29,7 @@ typedef struct batch_item {
                        the file */
   bool is_in_flight;
   bool refers_to_others; /**< what it means depends on files beside it, by a journal: it has no duplicates */
+  bool is_other_beside;  /**< a file that was read beside it is another one now, and it is not to be done */
   int64_t original;      /**< the item whose bytes it has; -1 = none */
 } batch_item;
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The stages of a run, one after another. */
+#include "batch/changes.h"
 #include "batch/plan.h"
 #include "batch/run.h"
 
@@ -299,7 +300,8 @@ static bool prepare(run *r, const char *journal) {
   r->ending = malloc(BATCH_ENDING_BYTES);
   if (!r->contents || !r->needs_more || !r->slots || !r->ending)
     return batch_fail(r->error, "out of memory: free some");
-  return batch_replay(r->manifest, r->contents, r->settings, journal, r->error);
+  return batch_replay(r->manifest, r->contents, r->settings, journal, r->error) &&
+         batch_changes_beside(r->manifest, r->settings, r->error);
 }
 
 static bool note_run(run *r, const char *event) {

@@ -77,6 +77,9 @@ char *batch_command_line(const batch_item *item, const batch_maker *maker);
  * or a .glb whose buffers or pictures are not in it. True, too, where that cannot be told.
  */
 bool batch_refers_to_others(const char *path, bool with_colors);
+/** A digest of a file, or folder of files, and of the .json beside it; NULL if it is not there. To be freed.
+ */
+char *batch_file_digest(const char *path);
 
 /* ---- batch_try.c: commands in a child ---- */
 

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Files beside a mesh that it refers to, and those that options name. */
 #include "batch/inputs.h"
+#include "batch/outputs.h"
 #include "cli/batch.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
@@ -58,3 +60,25 @@ bool batch_refers_to_others(const char *path, bool with_colors) {
   return refers;
 }
 
+/* ---- Files of options ---- */
+
+/** The digest of a file or folder, to be released; NULL if it is not there. */
+static json_t *describe(const char *path) {
+  const char *slash = strrchr(path, '/');
+  char *folder = slash ? strndup(path, (size_t)(slash - path)) : strdup(".");
+  json_t *described = folder ? batch_output_describe(folder, slash ? slash + 1 : path) : NULL;
+  free(folder);
+  return described;
+}
+
+char *batch_file_digest(const char *path) {
+  char *beside = NULL, *text = NULL;
+  json_t *file = describe(path), *json = asprintf(&beside, "%s.json", path) >= 0 ? describe(beside) : NULL;
+  const char *digest = batch_json_text(file, "sha256"), *other = batch_json_text(json, "sha256");
+  if (digest && asprintf(&text, "%s%s%s", digest, other ? " " : "", other ? other : "") < 0)
+    text = NULL;
+  json_decref(file);
+  json_decref(json);
+  free(beside);
+  return text;
+}

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** A mesh of a batch: which commands it goes through. */
+#include "batch/plan.h"
 #include "cli/batch.h"
 
 #include <inttypes.h>
@@ -226,8 +227,27 @@ json_t *batch_make_job(const batch_item *item, uint64_t memory, void *payload, b
   return NULL;
 }
 
+/** Notes the bytes of the file that an option of grids names, if it does, and of the description beside it.
+ */
+static void add_file(json_t *settings, const batch_request *given, const char *option) {
+  const char *path = NULL;
+  size_t length = strlen(option);
+  for (int w = 0; w < given->grid_options.count; w++)
+    if (strncmp(given->grid_options.words[w], option, length) == 0 &&
+        given->grid_options.words[w][length] == '=')
+      path = given->grid_options.words[w] + length + 1;
+  bool is_word = path && strcmp(option, "--color") == 0 && !strchr(path, '.'); /* such as "mesh" */
+  char *key = NULL, *digest = path && !is_word ? batch_file_digest(path) : NULL;
+  if (digest && asprintf(&key, BATCH_FILE_OF "%s", option) >= 0)
+    json_object_set_new(settings, key, json_string(digest));
+  free(key);
+  free(digest);
+}
+
 json_t *batch_make_settings(const batch_request *given) {
   json_t *settings = json_object();
+  add_file(settings, given, "--like");
+  add_file(settings, given, "--color");
   for (int p = 0; p < BATCH_PRODUCTS; p++) {
     char *text =
         p == BATCH_GRID ? batch_words_text(given->grid_options.words, given->grid_options.count) : NULL;

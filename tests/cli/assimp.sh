@@ -179,4 +179,10 @@ done
 cp in/stool.glb apart/c/
 cp in/stool.glb apart/d/
 run 'voxmend batch apart -o apart-out -r 8 --format npy --pictures 0 | grep result; grep -o "duplicate_of\":\"[^\"]*" apart-out/.batch/journal-0-of-1.jsonl'
+# The buffer of a .gltf belongs to what was made of it.
+mkdir buffers
+cp models/wedge.gltf buffers/
+cp wedge.bin buffers/
+{ head -c 44 wedge.bin; printf '\0\0\0\077'; tail -c 24 wedge.bin; } >half.bin
+run 'voxmend batch buffers -o buffers-out -r 8 --format npy --pictures 0 | grep result && cp half.bin buffers/wedge.bin && voxmend batch buffers -o buffers-out -r 8 --format npy --pictures 0'
 finish

@@ -116,6 +116,14 @@ run 'voxmend voxelize paint/b/m.obj -o m.npy -r 8 --color mesh -q && cmp m.npy p
 run 'rm painted/b/m.npy && voxmend batch paint -o painted -r 8 --format npy --color mesh --pictures 0 | grep result; cmp m.npy painted/b/m.npy'
 run 'voxmend batch paint/own.csv -o own-paint -r 8 --format npy --pictures 0 | grep result; cmp m.npy own-paint/b.npy'
 run 'voxmend batch paint -o plain -r 8 --format npy --pictures 0 | grep result'
+# What was read beside a mesh belongs to it, and so do files that options name.
+again='voxmend batch paint -o painted -r 8 --format npy --color mesh --pictures 0'
+run 'touch -d 2001-01-01 paint/*/m.mtl && statuses'
+run 'printf "newmtl paint\nKd 0 1 0\n" >paint/a/m.mtl && statuses'
+run 'rm painted/a/m.npy && statuses && voxmend voxelize paint/a/m.obj -o m.npy -r 8 --color mesh -q && cmp m.npy painted/a/m.npy'
+run 'rm paint/b/m.mtl && statuses'
+run 'voxmend voxelize in/torus.off -o like.npy -r 8 -q && voxmend batch data/a/cube.off -o liked --like like.npy -q && voxmend batch data/a/cube.off -o liked --like like.npy -q'
+run 'voxmend voxelize in/sphere.off -o like.npy -r 8 -q && voxmend batch data/a/cube.off -o liked --like like.npy'
 # Folders of variants have links in them.
 run 'voxmend batch splits -o varied --no-grid --augment "-n 2 -r 8" --pictures 0; voxmend batch verify varied; find varied -name "*.rle" | sort'
 run 'find varied -name "*.rle" -links 1; find varied -name "*.rle" -links 2 | wc -l; find varied -name "*.rle" -links 3 | wc -l'
