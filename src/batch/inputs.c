@@ -3,6 +3,7 @@
 #include "batch/archive.h"
 #include "batch/tree.h"
 
+#include <errno.h>
 #include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -171,8 +172,14 @@ static bool add_named(batch_manifest *out, const batch_inputs *inputs, const cha
   struct stat info;
   if (strcmp(name, "-") == 0)
     return batch_table_read(out, name, error);
-  if (stat(name, &info) != 0)
+  if (stat(name, &info) != 0) {
+    int reason = errno;
+    /* a link to nothing is told of when its turn comes, as the rows of lists are */
+    if (lstat(name, &info) == 0)
+      return add_file(out, name + prefix, name, &(struct stat){0}, error);
+    errno = reason;
     return batch_fail_errno(error, "%s: cannot read it", name);
+  }
   if (S_ISDIR(info.st_mode))
     return add_folder(out, inputs, name, error);
   if (is_list(name))

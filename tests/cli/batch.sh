@@ -156,6 +156,13 @@ cp in/cube.off net/chair/train/chair_1.off
 cp in/torus.off net/chair/test/chair_2.off
 run 'voxmend batch net -o netted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" netted/.batch/plan.jsonl'
 run 'find net -name "*.off" >net.txt && voxmend batch net.txt -o enlisted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" enlisted/.batch/plan.jsonl'
+# A link to nothing costs itself alone where it is named, also by a pattern, and is passed over in a folder.
+mkdir hanging
+cp in/cube.off hanging/a.off
+ln -s nowhere.off hanging/b.off
+run 'voxmend batch "hanging/*.off" -o hung -r 8 --pictures 0; cut -f 1-4 hung/failures.tsv'
+run 'voxmend batch hanging/a.off hanging/b.off -o hung-named -r 8 --pictures 0 | grep result'
+run 'voxmend batch hanging -o hung-folder -r 8 --pictures 0 | grep -E "result|passed"'
 # Inputs are never outputs, and no two outputs are the same.
 mkdir clash
 cp in/cube.off clash/a.off
