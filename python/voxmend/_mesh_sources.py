@@ -118,7 +118,7 @@ def load(path: Union[Path, IsFile], format: Optional[str] = None, deflection: fl
     Args:
         path: .off, .obj, .stl, .ply; .gltf, .3mf, .step and more where the library was built with their modules. "-" is
             standard input. Or a file that is open for reading: it is read to its end, and not closed.
-        format: such as "stl"; by content, then name, if None.
+        format: such as "stl" or "glb"; by content, then name, if None.
         deflection: STEP and IGES: how far triangles may lie from a curved surface, as a part of the diagonal; 0 = 0.001.
         external: which other files the mesh may refer to, such as the buffers of a glTF: "folder" = in its own folder or below,
             "any" = wherever it says, "none". What is refused is a warning, or an error where the mesh cannot be read without.

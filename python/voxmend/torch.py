@@ -37,13 +37,25 @@ __all__ = ["EXTENSIONS", "GridDataset", "IterableVoxelDataset", "VoxelDataset", 
 EXTENSIONS = (".off", ".obj", ".stl", ".ply", ".glb", ".gltf", ".3mf", ".dae", ".fbx", ".step", ".stp", ".iges", ".igs")
 
 
+def _is_hidden(name: str) -> bool:
+    """What `voxmend batch` passes over, too: hidden files and folders, and what macOS adds to archives."""
+    return name.startswith(".") or name == "__MACOSX"
+
+
+def _meshes_of(folder: str) -> Iterator[str]:
+    for at, folders, names in os.walk(folder):
+        folders[:] = [name for name in folders if not _is_hidden(name)]
+        for name in names:
+            if name.lower().endswith(EXTENSIONS) and not _is_hidden(name):
+                yield os.path.join(at, name)
+
+
 def _files_of(folder: str) -> List[str]:
-    return sorted(os.path.join(at, name) for at, _, names in os.walk(folder) for name in names
-                  if name.lower().endswith(EXTENSIONS))
+    return sorted(_meshes_of(folder))
 
 
 def _has_mesh(folder: str) -> bool:
-    return any(name.lower().endswith(EXTENSIONS) for _, _, names in os.walk(folder) for name in names)
+    return any(True for _ in _meshes_of(folder))
 
 
 class VoxelDataset(Dataset):
@@ -72,7 +84,7 @@ class VoxelDataset(Dataset):
         for name, value, least in (("resolution", resolution, 1), ("variants", variants, 0), ("memory", memory, 0)):
             _values.whole("dataset: " + name, value, least)
         self.classes = sorted(e.name for e in os.scandir(self.root)
-                              if e.is_dir() and not e.name.startswith(".") and _has_mesh(e.path))
+                              if e.is_dir() and not _is_hidden(e.name) and _has_mesh(e.path))
         self.files: List[str] = []
         self.labels: List[int] = []
         for label, name in enumerate(self.classes):

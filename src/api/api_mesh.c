@@ -280,6 +280,14 @@ const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index) {
   return mesh && index >= 0 && index < mesh->warnings.count ? mesh->warnings.text[index] : "";
 }
 
+int64_t vxm_mesh_companion_count(const vxm_mesh *mesh) {
+  return mesh ? (int64_t)mesh->companion_count : 0;
+}
+
+const char *vxm_mesh_companion(const vxm_mesh *mesh, int64_t index) {
+  return mesh && index >= 0 && (size_t)index < mesh->companion_count ? mesh->companions[index] : "";
+}
+
 vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error) {
   VXM_RESULT_CLEAR(out);
   if (!out || !mesh)

@@ -104,7 +104,7 @@ bool batch_unpacker_start(batch_unpacker *out, const char *path, uint64_t most, 
 }
 
 int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error *error) {
-  batch_unpacked head;
+  static batch_unpacked head;
   batch_descriptor_room room;
   struct iovec part = {&head, sizeof head};
   struct msghdr message = {
@@ -118,14 +118,19 @@ int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error
     batch_fail(error, "the process that reads the archive was ended");
     return -2;
   }
-  head.name[sizeof head.name - 1] = head.problem[sizeof head.problem - 1] = '\0';
+  head.name[sizeof head.name - 1] = head.target[sizeof head.target - 1] = '\0';
+  head.problem[sizeof head.problem - 1] = '\0';
   if (head.is_end && head.problem[0])
     batch_fail(error, "%s", head.problem);
   if (head.is_end)
     return head.problem[0] ? -1 : 0;
   send(unpacker->channel, "", 1, MSG_NOSIGNAL); /* the next may be unpacked */
-  *out = (batch_member){.bytes = head.bytes, .descriptor = batch_descriptor_take(&message)};
+  *out = (batch_member){.bytes = head.bytes,
+                        .kind = head.kind,
+                        .place = head.place,
+                        .descriptor = batch_descriptor_take(&message)};
   memcpy(out->name, head.name, sizeof out->name);
+  memcpy(out->target, head.target, sizeof out->target);
   memcpy(out->problem, head.problem, sizeof out->problem);
   return 1;
 }
@@ -138,39 +143,4 @@ void batch_unpacker_end(batch_unpacker *unpacker) {
   while (unpacker->id > 0 && waitpid(unpacker->id, NULL, 0) < 0 && errno == EINTR) {
   }
   *unpacker = (batch_unpacker){.channel = -1};
-}
-
-/* ---- What is in it ---- */
-
-static bool add_member(batch_manifest *out, const batch_inputs *inputs, const batch_item *archive,
-                       const batch_member *member, batch_error *error) {
-  if (!batch_is_mesh(inputs, member->name)) {
-    batch_pass_over(out, member->name);
-    return true;
-  }
-  char *id = NULL;
-  if (asprintf(&id, "%s%s%s", archive->id, *archive->id ? "/" : "", member->name) < 0)
-    return batch_fail(error, "out of memory for the list of meshes: free some");
-  batch_item item = *archive;
-  item.id = id;
-  item.member = (char *)(uintptr_t)member->name;
-  item.bytes = member->bytes;
-  bool good = batch_manifest_add(out, &item, error);
-  free(id);
-  return good;
-}
-
-bool batch_archive_list(batch_manifest *out, const batch_inputs *inputs, const batch_item *archive,
-                        batch_error *error) {
-  batch_unpacker unpacker;
-  batch_member member;
-  batch_error problem;
-  if (!batch_unpacker_start(&unpacker, archive->path, 0, error))
-    return false;
-  int got;
-  bool good = true;
-  while (good && (got = batch_unpacker_next(&unpacker, &member, &problem)) > 0)
-    good = add_member(out, inputs, archive, &member, error);
-  batch_unpacker_end(&unpacker);
-  return good && (got == 0 || batch_fail(error, "%s: %s", archive->path, problem.text));
 }

@@ -19,9 +19,19 @@ bool batch_archive_list(batch_manifest *out, const batch_inputs *inputs, const b
 
 enum { BATCH_MEMBER_MAX = 4096 };
 
-/** What comes out of an archive. */
+/** What a member is. */
+typedef enum batch_member_kind {
+  BATCH_MEMBER_FILE,
+  BATCH_MEMBER_LINK, /**< a hard link: another name of a member before it */
+  BATCH_MEMBER_OTHER /**< a symbolic link, a pipe, a device */
+} batch_member_kind;
+
+/** What comes out of an archive: where bytes are asked for files alone, else all but folders. */
 typedef struct batch_member {
   char name[BATCH_MEMBER_MAX];
+  char target[BATCH_MEMBER_MAX]; /**< of a link: the other name */
+  batch_member_kind kind;
+  int64_t place; /**< in the archive, from 0 */
   uint64_t bytes;
   int descriptor;    /**< of its bytes, to be closed; -1 = they were not asked for, or were too many */
   char problem[256]; /**< what is wrong with it, or "" */

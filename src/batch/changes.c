@@ -146,14 +146,26 @@ static void what_helps(char out[256], const refusal *r, int shards) {
   snprintf(out + used, 256 - used, ",");
 }
 
-static bool tell_refusal(const refusal *r, const batch_settings *settings, batch_error *error) {
+/** @param beside whether it is files that were read beside the inputs */
+static bool tell_refusal(const refusal *r, bool beside, const batch_settings *settings, batch_error *error) {
   char help[256];
   what_helps(help, r, settings->shards);
-  return batch_fail(error,
-                    "%s: %lld of the inputs changed after the batch began (%s, %s%s): %s undo that, or give "
-                    "another -o",
-                    settings->output, (long long)r->count, r->first->id, batch_status_names[r->first->status],
-                    r->count > 1 ? ", ..." : "", help);
+  return batch_fail(
+      error,
+      "%s: %s%lld of the inputs%s changed after the batch began (%s, %s%s): %s undo that, or give "
+      "another -o",
+      settings->output, beside ? "files beside " : "", (long long)r->count,
+      beside ? " (buffers, materials, textures)" : "", r->first->id, batch_status_names[r->first->status],
+      r->count > 1 ? ", ..." : "", help);
+}
+
+bool batch_changes_beside(const batch_manifest *manifest, const batch_settings *settings,
+                          batch_error *error) {
+  refusal r = {0};
+  for (int64_t i = 0; i < manifest->count; i++)
+    if (manifest->items[i].is_other_beside)
+      refuse(&r, &manifest->items[i]);
+  return r.count == 0 || tell_refusal(&r, true, settings, error);
 }
 
 /** Leaves as changed what is to be made anew. With shards it is not known who is at what just now. */
@@ -170,7 +182,7 @@ static bool judge(comparison *c, const batch_content *contents, const batch_sett
     else
       refuse(&r, item);
   }
-  return r.count == 0 || tell_refusal(&r, settings, error);
+  return r.count == 0 || tell_refusal(&r, false, settings, error);
 }
 
 static int by_content(const void *a, const void *b) {
@@ -222,6 +234,7 @@ static bool judge_all(comparison *c, batch_manifest *manifest, const batch_setti
     batch_item *item = &manifest->items[i];
     item->status = BATCH_PENDING;
     item->attempts = item->aborted = 0;
+    item->refers_to_others = item->is_other_beside = false;
   }
   free(contents);
   return good;

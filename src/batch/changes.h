@@ -17,5 +17,8 @@
  * @return false with what has changed and what helps, where it may not
  */
 bool batch_changes_take(batch_manifest *manifest, const batch_settings *settings, batch_error *error);
+/** Refuses, where files have changed that were read beside meshes that are not to be done, with what helps.
+ */
+bool batch_changes_beside(const batch_manifest *manifest, const batch_settings *settings, batch_error *error);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Files with the same bytes are worked at once: the others get links to what was made. */
+#include "batch/digest.h"
 #include "batch/outputs.h"
 #include "batch/run.h"
 
@@ -12,14 +13,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/** What refers to other files may mean something else in another folder. */
+/** What refers to other files may mean something else in another folder. Of .obj and .glb some do: who
+ * digests them sees that, and leaves them out. Members of archives are read without others. */
 static bool is_self_contained(const batch_item *item) {
   static const char *const known[] = {"off", "ply", "stl", "obj", "glb", "3mf", "step", "stp", "iges", "igs"};
   const char *extension = batch_extension(item->path);
-  for (size_t k = 0; !item->member && k < sizeof known / sizeof *known; k++)
-    if (strcasecmp(extension, known[k]) == 0)
-      return true;
-  return false;
+  bool is_one = item->member != NULL;
+  for (size_t k = 0; !is_one && k < sizeof known / sizeof *known; k++)
+    is_one = strcasecmp(extension, known[k]) == 0;
+  return is_one;
 }
 
 static int compare_texts(const char *a, const char *b) {
@@ -44,7 +46,7 @@ static batch_item **with_equal_size(const run *r, int64_t *count) {
   int64_t all = 0;
   *count = 0;
   for (int64_t i = 0; list && i < r->manifest->count; i++)
-    if (is_self_contained(&r->manifest->items[i]))
+    if (is_self_contained(&r->manifest->items[i]) && !r->manifest->items[i].refers_to_others)
       list[all++] = &r->manifest->items[i];
   if (list)
     qsort(list, (size_t)all, sizeof *list, by_size);
@@ -68,6 +70,10 @@ typedef struct hashing {
   int64_t count, next;
 } hashing;
 
+static bool is_known(const run *r, int64_t index) {
+  return (r->contents[index].half[0] | r->contents[index].half[1]) != 0;
+}
+
 static batch_turn next_hashes(run *r, void *payload) {
   hashing *h = payload;
   int64_t chunk[BATCH_HASHES];
@@ -78,15 +84,76 @@ static batch_turn next_hashes(run *r, void *payload) {
          names < BATCH_REQUEST_MAX / 4;
        h->next++) {
     int64_t index = h->items[h->next] - r->manifest->items;
-    if (r->contents[index].half[0] | r->contents[index].half[1])
+    if (is_known(r, index) || h->items[h->next]->member)
       continue;
     chunk[count++] = index;
     bytes += h->items[h->next]->bytes;
     names += strlen(h->items[h->next]->path);
+    names += h->items[h->next]->options ? strlen(h->items[h->next]->options) : 0;
   }
   if (count == 0)
     return BATCH_NOTHING_LEFT;
   return batch_give_hashes(r, chunk, count) ? BATCH_GIVEN_OUT : BATCH_LATER;
+}
+
+/* ---- Digests of what is in archives ---- */
+
+/** Whether a member is asked for: one that is to be done. Those that are done have been digested. */
+static bool is_unknown_member(const run *r, const batch_item *item) {
+  return item->member && item->status == BATCH_PENDING && !is_known(r, item - r->manifest->items);
+}
+
+/** Of all items that are names of this member; returns how many were asked for. */
+static int64_t take_digest(run *r, const batch_wanted *members, int64_t count, const batch_member *member) {
+  char digest[BATCH_DIGEST] = "";
+  uint64_t bytes;
+  int64_t w = batch_wanted_find(members, count, member->place), taken = 0;
+  if (w == count || members[w].place != member->place)
+    return 0;
+  if (member->descriptor < 0 || !batch_digest_open(digest, &bytes, member->descriptor))
+    digest[0] = '\0';
+  for (; w < count && members[w].place == member->place; w++, taken++)
+    batch_take_hash(r, members[w].item, digest);
+  return taken;
+}
+
+/** Reads an archive once more, until all that are asked for have come. What is wrong with it is told when it
+ * is the turn of its meshes. */
+static void digest_archive(run *r, batch_wanted *members, int64_t count) {
+  static batch_member member;
+  batch_unpacker unpacker;
+  batch_error problem;
+  int64_t left = count;
+  const char *path = r->manifest->items[members[0].item].path;
+  if (!batch_unpacker_start(&unpacker, path, batch_member_room(r->settings), &problem))
+    return;
+  batch_wanted_sort(members, count);
+  while (left > 0 && !batch_run_stops(r) && batch_unpacker_next(&unpacker, &member, &problem) > 0) {
+    left -= take_digest(r, members, count, &member);
+    if (member.descriptor >= 0)
+      close(member.descriptor);
+    batch_progress(r->tally, r->settings, 0, false);
+  }
+  batch_unpacker_end(&unpacker);
+}
+
+/** Members of one archive stand together. */
+static void digest_archives(run *r, const hashing *h) {
+  batch_wanted *members = malloc((size_t)(h->count + 1) * sizeof *members);
+  int64_t count = 0;
+  for (int64_t i = 0; members && i < h->count && !batch_run_stops(r); i++) {
+    const batch_item *item = h->items[i];
+    if (!is_unknown_member(r, item))
+      continue;
+    if (count > 0 && strcmp(r->manifest->items[members[0].item].path, item->path) != 0) {
+      digest_archive(r, members, count);
+      count = 0;
+    }
+    members[count++] = (batch_wanted){item->place, item - r->manifest->items};
+  }
+  if (members && count > 0 && !batch_run_stops(r))
+    digest_archive(r, members, count);
+  free(members);
 }
 
 /* ---- Who is the same ---- */
@@ -113,8 +180,12 @@ static int by_key(const void *a, const void *b) {
   return (x->index > y->index) - (x->index < y->index);
 }
 
+static const char *file_name(const batch_item *item) {
+  return item->member ? item->member : item->path;
+}
+
 static bool same_wish(const batch_item *a, const batch_item *b) {
-  return strcasecmp(batch_extension(a->path), batch_extension(b->path)) == 0 &&
+  return strcasecmp(batch_extension(file_name(a)), batch_extension(file_name(b))) == 0 &&
          compare_texts(a->options, b->options) == 0;
 }
 
@@ -141,6 +212,7 @@ void batch_find_duplicates(run *r) {
       h.next = 0;
       batch_run_source(r, next_hashes, &h, r->settings->jobs, NULL);
     }
+    digest_archives(r, &h);
     int64_t known = 0;
     for (int64_t i = 0; i < h.count; i++) {
       int64_t index = h.items[i] - r->manifest->items;
@@ -251,7 +323,7 @@ static bool finish_duplicate(run *r, int64_t index, const json_t *of_original) {
   batch_item *item = &r->manifest->items[index];
   const batch_item *original = &r->manifest->items[item->original];
   json_t *record = json_deep_copy(of_original);
-  static const char *const own[] = {"sum", "wall_ms", "cpu_ms", "peak_bytes"};
+  static const char *const own[] = {"sum", "wall_ms", "cpu_ms", "peak_bytes", "companions"};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     json_object_del(record, own[k]);
   json_object_set_new(record, "duplicate_of", batch_json_string(original->id));

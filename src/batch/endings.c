@@ -85,20 +85,23 @@ static void add_costs(json_t *record, const batch_ending *ending) {
   json_object_set_new(record, "peak_bytes", json_integer((json_int_t)ending->peak_bytes));
 }
 
+void batch_take_hash(run *r, int64_t item, const char *digest) {
+  if (!batch_content_read(&r->contents[item], digest)) {
+    r->contents[item] = batch_no_content;
+    return;
+  }
+  json_t *record = json_pack("{s:s, s:o, s:s}", "event", "hash", "item",
+                             batch_json_string(r->manifest->items[item].id), "sha256", digest);
+  if (!batch_journal_add(&r->journal, record, r->error))
+    batch_break(r);
+}
+
 static void take_hashes(run *r, const batch_slot *slot, const json_t *result) {
   const json_t *digests = json_object_get(result, "hash");
   for (int i = 0; i < slot->count && !r->is_broken; i++) {
     const char *digest = json_string_value(json_array_get(digests, (size_t)i));
-    int64_t item = slot->items[i];
-    if (!batch_content_read(&r->contents[item], digest)) {
-      if (digest) /* it cannot be read; else the child did not come so far */
-        r->contents[item] = batch_no_content;
-      continue;
-    }
-    json_t *record = json_pack("{s:s, s:o, s:s}", "event", "hash", "item",
-                               batch_json_string(r->manifest->items[item].id), "sha256", digest);
-    if (!batch_journal_add(&r->journal, record, r->error))
-      batch_break(r);
+    if (digest) /* else the child did not come so far */
+      batch_take_hash(r, slot->items[i], digest);
   }
 }
 

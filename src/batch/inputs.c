@@ -3,6 +3,7 @@
 #include "batch/archive.h"
 #include "batch/tree.h"
 
+#include <errno.h>
 #include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,8 +27,11 @@ bool batch_is_mesh(const batch_inputs *inputs, const char *name) {
   return is_among(batch_extension(name), inputs->extensions);
 }
 
+const char batch_odd[] = "(pipes, devices, links to nothing or back)", batch_hidden[] = "(hidden files)",
+           batch_leads_out[] = "(names with ..)";
+
 /** Counts a file, and tells once of what kind such files are. */
-static void pass_over_as(batch_manifest *manifest, const char *kind) {
+void batch_pass_over_as(batch_manifest *manifest, const char *kind) {
   char word[48];
   size_t used = strlen(manifest->note);
   manifest->passed_over++;
@@ -41,9 +45,9 @@ static void pass_over_as(batch_manifest *manifest, const char *kind) {
 void batch_pass_over(batch_manifest *manifest, const char *name) {
   const char *extension = batch_extension(name);
   if (*extension)
-    pass_over_as(manifest, extension - 1); /* with its dot */
+    batch_pass_over_as(manifest, extension - 1); /* with its dot */
   else
-    pass_over_as(manifest, "(no extension)");
+    batch_pass_over_as(manifest, "(no extension)");
 }
 
 /** "./a//b" as "a/b" would be found: an id is a name, not a way. */
@@ -78,6 +82,11 @@ static bool add_archive(batch_manifest *out, const batch_inputs *inputs, const c
   return batch_archive_list(out, inputs, &archive, error);
 }
 
+bool batch_is_hidden(const char *part, size_t length) {
+  static const char of_mac[] = "__MACOSX";
+  return part[0] == '.' || (length == strlen(of_mac) && strncmp(part, of_mac, length) == 0);
+}
+
 /* ---- Folders ---- */
 
 /** Going through a folder. */
@@ -109,7 +118,7 @@ static bool add_entry(const search *s, const batch_tree_entry *entry) {
  * sockets, pipes and devices. */
 static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
   search *s = payload;
-  bool is_hidden = entry->depth > 0 && entry->name[0] == '.';
+  bool is_hidden = entry->depth > 0 && batch_is_hidden(entry->name, strlen(entry->name));
   switch (entry->kind) {
   case BATCH_TREE_FOLDER:
     if (s->has_except && entry->info->st_dev == s->except.st_dev && entry->info->st_ino == s->except.st_ino)
@@ -123,7 +132,7 @@ static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
     batch_fail_errno(s->error, "%s: cannot read the folder", entry->path);
     break;
   case BATCH_TREE_OTHER:
-    pass_over_as(s->out, "(pipes, devices, links to nothing or back)");
+    batch_pass_over_as(s->out, batch_odd);
     break;
   case BATCH_TREE_LEFT:
     break;
@@ -163,8 +172,14 @@ static bool add_named(batch_manifest *out, const batch_inputs *inputs, const cha
   struct stat info;
   if (strcmp(name, "-") == 0)
     return batch_table_read(out, name, error);
-  if (stat(name, &info) != 0)
+  if (stat(name, &info) != 0) {
+    int reason = errno;
+    /* a link to nothing is told of when its turn comes, as the rows of lists are */
+    if (lstat(name, &info) == 0)
+      return add_file(out, name + prefix, name, &(struct stat){0}, error);
+    errno = reason;
     return batch_fail_errno(error, "%s: cannot read it", name);
+  }
   if (S_ISDIR(info.st_mode))
     return add_folder(out, inputs, name, error);
   if (is_list(name))

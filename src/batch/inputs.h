@@ -23,6 +23,11 @@ bool batch_is_mesh(const batch_inputs *inputs, const char *name);
 const char *batch_extension(const char *name);
 /** Notes a file that was passed over. */
 void batch_pass_over(batch_manifest *manifest, const char *name);
+/** The same, and of what kind it is. */
+void batch_pass_over_as(batch_manifest *manifest, const char *kind);
+extern const char batch_odd[], batch_hidden[], batch_leads_out[];
+/** Whether a name in a path, of so many letters, is no part of a dataset: ".x", or what macOS adds. */
+bool batch_is_hidden(const char *part, size_t length);
 
 /**
  * Adds the rows of a list (.txt: a path a line) or table (.csv, .tsv: a line of column names first: path, and

@@ -11,7 +11,7 @@ static bool copy(char **out, const char *text) {
   return *out || !text;
 }
 
-static void free_item(batch_item *item) {
+void batch_item_free(batch_item *item) {
   free(item->id);
   free(item->path);
   free(item->member);
@@ -49,7 +49,8 @@ bool batch_manifest_add(batch_manifest *manifest, const batch_item *item, batch_
     manifest->capacity = room;
   }
   batch_item *added = &manifest->items[manifest->count];
-  *added = (batch_item){.bytes = item->bytes, .modified = item->modified, .original = -1};
+  *added =
+      (batch_item){.bytes = item->bytes, .modified = item->modified, .place = item->place, .original = -1};
   added->id = readable(item->id, &added->is_misnamed);
   json_t *path = json_string(item->path), *member = json_string(item->member ? item->member : "");
   added->is_misnamed = added->is_misnamed || !path || !member;
@@ -61,7 +62,7 @@ bool batch_manifest_add(batch_manifest *manifest, const batch_item *item, batch_
     manifest->count++;
     return true;
   }
-  free_item(added);
+  batch_item_free(added);
   return batch_fail(error, "out of memory for the list of meshes: free some");
 }
 
@@ -212,9 +213,11 @@ bool batch_manifest_finish(batch_manifest *manifest, batch_error *error) {
     if (strcmp(manifest->items[i].id, manifest->items[i + 1].id) == 0)
       return batch_fail(error, "%s stands twice among the inputs; give each an id of its own",
                         manifest->items[i].id);
-  for (int64_t i = 0; i < manifest->count; i++)
+  for (int64_t i = 0; i < manifest->count; i++) {
+    manifest->items[i].number = i;
     if (!place(&manifest->items[i]))
       return batch_fail(error, "out of memory for the list of meshes: free some");
+  }
   return name_outputs(manifest, error);
 }
 
@@ -233,13 +236,13 @@ void batch_manifest_keep_shard(batch_manifest *manifest, int shard, int shards) 
     if (i % shards == shard)
       manifest->items[kept++] = manifest->items[i];
     else
-      free_item(&manifest->items[i]);
+      batch_item_free(&manifest->items[i]);
   manifest->count = kept;
 }
 
 void batch_manifest_free(batch_manifest *manifest) {
   for (int64_t i = 0; i < manifest->count; i++)
-    free_item(&manifest->items[i]);
+    batch_item_free(&manifest->items[i]);
   free(manifest->items);
   *manifest = (batch_manifest){0};
 }

@@ -15,8 +15,10 @@ typedef struct batch_item {
   char *kind;    /**< its class; NULL = none told */
   char *split;   /**< "train" and the like; NULL = none told */
   char *options; /**< words of its own, behind those of the batch; NULL = none */
+  int64_t place; /**< of a member in the archive, from 0; hard links have that of their file */
   uint64_t bytes;
   int64_t modified; /**< of the file or archive, in nanoseconds since 1970 */
+  int64_t number;   /**< its place among all, of a shard or sample, too: from 0, in the order of ids */
 
   /* What has come of it. */
   batch_status status;
@@ -26,7 +28,9 @@ typedef struct batch_item {
   bool is_misnamed; /**< its name is no UTF-8, which requests and journals are: the path may not be that of
                        the file */
   bool is_in_flight;
-  int64_t original; /**< the item whose bytes it has; -1 = none */
+  bool refers_to_others; /**< what it means depends on files beside it, by a journal: it has no duplicates */
+  bool is_other_beside;  /**< a file that was read beside it is another one now, and it is not to be done */
+  int64_t original;      /**< the item whose bytes it has; -1 = none */
 } batch_item;
 
 typedef struct batch_manifest {
@@ -46,5 +50,6 @@ int64_t batch_manifest_find(const batch_manifest *manifest, const char *id);
 /** Leaves every n-th, from one on that is counted from 0. */
 void batch_manifest_keep_shard(batch_manifest *manifest, int shard, int shards);
 void batch_manifest_free(batch_manifest *manifest);
+void batch_item_free(batch_item *item);
 
 #endif

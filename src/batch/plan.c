@@ -112,18 +112,33 @@ bool batch_plan_each(const char *output, bool (*each)(const json_t *item, void *
 
 /* ---- Comparing ---- */
 
+/** Digests of files that options name: batches before they were noted have none, and go on without. */
+static bool is_digest(const char *key) {
+  return strncmp(key, BATCH_FILE_OF, strlen(BATCH_FILE_OF)) == 0;
+}
+
 static bool same_settings(const char *output, const json_t *old, const json_t *now, batch_error *error) {
   const char *key;
   json_t *value;
   json_object_foreach((json_t *)(uintptr_t)now, key, value) {
     const char *before = batch_json_text(old, key), *after = json_string_value(value);
+    if (!before && is_digest(key))
+      continue;
+    if (before && is_digest(key) && after && strcmp(before, after) != 0)
+      return batch_fail(error,
+                        "%s: the %s is another than when the batch began; give another -o, or the same",
+                        output, key);
     if (strcmp(before ? before : "", after ? after : "") != 0)
       return batch_fail(error,
                         "%s: the batch began with %s '%s', now it is '%s'; give another -o, or the same",
                         output, key, before ? before : "", after ? after : "");
   }
-  return json_object_size(old) == json_object_size(now) ||
-         batch_fail(error, "%s: the batch began with other options; give another -o, or the same", output);
+  json_object_foreach((json_t *)(uintptr_t)old, key, value) {
+    if (!json_object_get(now, key))
+      return batch_fail(error, "%s: the batch began with other options; give another -o, or the same",
+                        output);
+  }
+  return true;
 }
 
 static bool same_run(const json_t *run, const json_t *plan, const batch_settings *settings,

@@ -13,6 +13,8 @@
 #include "batch/supervisor.h"
 
 #define BATCH_FOLDER ".batch"
+/** Keys of settings that begin so are digests of files that options name. */
+#define BATCH_FILE_OF "file of "
 
 /**
  * Freezes the plan, or compares with the one that is there, which is renewed where inputs have changed and

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/replay.h"
+#include "batch/companions.h"
 #include "batch/outputs.h"
 
 #include <inttypes.h>
@@ -36,12 +37,15 @@ static void take_end(const replay *r, batch_item *item, const json_t *record) {
   bool again = status == BATCH_STATUSES || r->settings->retry[status] ||
                (batch_is_done(status) && !has_outputs(r->settings->output, record));
   item->status = again ? BATCH_PENDING : status;
+  item->refers_to_others = json_is_true(json_object_get(record, "refers_to_others"));
+  item->is_other_beside = !again && !batch_companions_same(item->path, json_object_get(record, "companions"));
 }
 
 /** It is another file from then on. */
 static void take_change(const replay *r, int64_t at) {
   r->manifest->items[at].status = BATCH_PENDING;
   r->manifest->items[at].aborted = 0;
+  r->manifest->items[at].refers_to_others = r->manifest->items[at].is_other_beside = false;
   r->contents[at] = (batch_content){{0, 0}};
 }
 

@@ -221,10 +221,14 @@ bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
 /** Where it is too long to be sent they are not told to be duplicates. */
 bool batch_give_hashes(run *r, const int64_t *items, int count) {
   batch_slot *slot = free_slot(r);
-  json_t *job = json_object(), *paths = json_array();
-  for (int i = 0; i < count; i++)
-    json_array_append_new(paths, batch_json_string(r->manifest->items[items[i]].path));
+  json_t *job = json_object(), *paths = json_array(), *options = json_array();
+  for (int i = 0; i < count; i++) {
+    const batch_item *item = &r->manifest->items[items[i]];
+    json_array_append_new(paths, batch_json_string(item->path));
+    json_array_append_new(options, batch_json_string(item->options ? item->options : ""));
+  }
   json_object_set_new(job, "hash", paths);
+  json_object_set_new(job, "options", options);
   *slot = (batch_slot){.is_hashing = true, .count = count};
   memcpy(slot->items, items, (size_t)count * sizeof *items);
   return send_request(r, slot, job, -1, &r->settings->limits);

@@ -54,10 +54,26 @@ bool batch_give_hashes(run *r, const int64_t *items, int count);
 
 /** Writes an item's end into the journal, and counts it. The record is given away. */
 bool batch_end_item(run *r, int64_t item, batch_status status, json_t *record);
+/** Notes the digest of an item's bytes; "" where they cannot be had, or say too little. */
+void batch_take_hash(run *r, int64_t item, const char *digest);
 /** What a child has said when it ended; NULL where it said nothing that makes sense. */
 void batch_take_ending(run *r, batch_slot *slot, const batch_ending *ending);
 /** Sets is_broken; the error is told already. */
 bool batch_break(run *r);
+
+/* ---- Members of archives ---- */
+
+/** A member that is asked for. Several items may have one place: hard links. */
+typedef struct batch_wanted {
+  int64_t place, item;
+} batch_wanted;
+
+/** Puts them into the order of the archive. */
+void batch_wanted_sort(batch_wanted *members, int64_t count);
+/** Index of the first of them that has this place, or what would be behind it. */
+int64_t batch_wanted_find(const batch_wanted *members, int64_t count, int64_t place);
+/** The bytes that an unpacked mesh may take in memory. */
+uint64_t batch_member_room(const batch_settings *settings);
 
 /* ---- Duplicates ---- */
 

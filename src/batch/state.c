@@ -14,7 +14,7 @@ typedef struct adding {
   batch_error *error;
 } adding;
 
-/** The output's name is taken as it stands there. */
+/** The output's name is taken as it stands there; the number is that of the line. */
 static bool add_item(const json_t *line, void *payload) {
   const adding *a = payload;
   batch_item item = {.id = (char *)(uintptr_t)batch_json_text(line, "item"),
@@ -30,6 +30,7 @@ static bool add_item(const json_t *line, void *payload) {
   if (!batch_manifest_add(a->manifest, &item, a->error))
     return false;
   batch_item *added = &a->manifest->items[a->manifest->count - 1];
+  added->number = a->manifest->count - 1;
   added->output = strdup(output);
   added->is_misnamed = json_is_true(json_object_get(line, "misnamed"));
   return added->output || batch_fail(a->error, "out of memory: free some");

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The stages of a run, one after another. */
+#include "batch/changes.h"
 #include "batch/plan.h"
 #include "batch/run.h"
 
@@ -58,27 +59,35 @@ static batch_turn next_file(run *r, void *payload) {
 typedef struct unpacking {
   const char *path;
   batch_unpacker unpacker;
-  int64_t *members; /**< of that archive which are wanted, in the order of ids */
+  batch_wanted *members; /**< of that archive */
   int64_t count, left;
-  int losses; /**< how often its process was ended by others */
+  bool has_later; /**< hard links to a member that another has: they come when it is read again */
+  int losses;     /**< how often its process was ended by others */
   bool is_alone;
 } unpacking;
 
-/** The wanted item of a member, or -1. */
-static int64_t member_item(const run *r, const unpacking *u, const char *name) {
-  const batch_item *items = r->manifest->items;
-  int64_t low = 0, high = u->count;
-  while (low < high) { /* ids of one archive are in the order of the names in it */
+static int by_place(const void *a, const void *b) {
+  const batch_wanted *x = a, *y = b;
+  if (x->place != y->place)
+    return x->place < y->place ? -1 : 1;
+  return (x->item > y->item) - (x->item < y->item);
+}
+
+void batch_wanted_sort(batch_wanted *members, int64_t count) {
+  if (count > 0)
+    qsort(members, (size_t)count, sizeof *members, by_place);
+}
+
+int64_t batch_wanted_find(const batch_wanted *members, int64_t count, int64_t place) {
+  int64_t low = 0, high = count;
+  while (low < high) {
     int64_t middle = low + (high - low) / 2;
-    int order = strcmp(name, items[u->members[middle]].member);
-    if (order == 0)
-      return u->members[middle];
-    if (order < 0)
-      high = middle;
-    else
+    if (members[middle].place < place)
       low = middle + 1;
+    else
+      high = middle;
   }
-  return -1;
+  return low;
 }
 
 static bool end_badly(run *r, int64_t item, const char *text) {
@@ -87,20 +96,26 @@ static bool end_badly(run *r, int64_t item, const char *text) {
 }
 
 static void take_member(run *r, unpacking *u, const batch_member *member) {
-  int64_t item = member_item(r, u, member->name);
-  if (item >= 0 && is_waiting(r, item)) {
+  int64_t w = batch_wanted_find(u->members, u->count, member->place);
+  for (bool is_given = false; w < u->count && u->members[w].place == member->place; w++) {
+    int64_t item = u->members[w].item;
+    if (!is_waiting(r, item))
+      continue;
+    if (is_given) {
+      u->has_later = true; /* a descriptor has one position, and so one reader */
+      continue;
+    }
     u->left--;
     if (member->descriptor < 0)
       end_badly(r, item, member->problem);
     else
-      batch_give_out(r, item, member->descriptor, u->is_alone);
+      is_given = batch_give_out(r, item, member->descriptor, u->is_alone);
   }
   if (member->descriptor >= 0)
     close(member->descriptor);
 }
 
-/** The bytes that an unpacked mesh may take in memory. */
-static uint64_t most_bytes(const batch_settings *settings) {
+uint64_t batch_member_room(const batch_settings *settings) {
   return settings->limits.memory ? settings->limits.memory : UINT64_C(1) << 36;
 }
 
@@ -108,9 +123,10 @@ static uint64_t most_bytes(const batch_settings *settings) {
 static bool restart(run *r, unpacking *u) {
   batch_unpacker_end(&u->unpacker);
   u->left = 0;
+  u->has_later = false;
   for (int64_t m = 0; m < u->count; m++)
-    u->left += is_waiting(r, u->members[m]);
-  return batch_unpacker_start(&u->unpacker, u->path, most_bytes(r->settings), r->error);
+    u->left += is_waiting(r, u->members[m].item);
+  return batch_unpacker_start(&u->unpacker, u->path, batch_member_room(r->settings), r->error);
 }
 
 static batch_turn next_member(run *r, void *payload) {
@@ -130,9 +146,11 @@ static batch_turn next_member(run *r, void *payload) {
   }
   if (got == -2 && ++u->losses < LOSSES_MAX && restart(r, u))
     return BATCH_GIVEN_OUT;
+  if (got == 0 && u->has_later && restart(r, u))
+    return BATCH_GIVEN_OUT;
   for (int64_t m = 0; m < u->count && !r->is_broken; m++) /* it ended, well or not, before all were found */
-    if (is_waiting(r, u->members[m]))
-      end_badly(r, u->members[m], problem.text);
+    if (is_waiting(r, u->members[m].item))
+      end_badly(r, u->members[m].item, problem.text);
   return BATCH_NOTHING_LEFT;
 }
 
@@ -140,9 +158,10 @@ static batch_turn next_member(run *r, void *payload) {
 static void run_archive(run *r, unpacking *u, int jobs) {
   u->left = u->count;
   u->losses = 0;
+  u->has_later = false;
   if (u->count == 0 || batch_run_stops(r))
     return;
-  if (!batch_unpacker_start(&u->unpacker, u->path, most_bytes(r->settings), r->error)) {
+  if (!batch_unpacker_start(&u->unpacker, u->path, batch_member_room(r->settings), r->error)) {
     batch_break(r);
     return;
   }
@@ -162,13 +181,14 @@ static int64_t collect_members(const run *r, unpacking *u, int64_t from,
     if (!item->member || strcmp(item->path, u->path) != 0)
       break; /* ids of an archive's members begin with its own: they stand together */
     if (wanted(r, i))
-      u->members[u->count++] = i;
+      u->members[u->count++] = (batch_wanted){item->place, i};
   }
+  batch_wanted_sort(u->members, u->count);
   return i;
 }
 
 static bool is_wanted_member(const run *r, int64_t i) {
-  return is_waiting(r, i) && r->manifest->items[i].aborted == 0;
+  return is_waiting(r, i) && r->manifest->items[i].original < 0 && r->manifest->items[i].aborted == 0;
 }
 
 static bool is_wanted_alone(const run *r, int64_t i) {
@@ -177,7 +197,8 @@ static bool is_wanted_alone(const run *r, int64_t i) {
 }
 
 static void run_archives(run *r, bool (*wanted)(const run *r, int64_t i), int jobs, bool is_alone) {
-  unpacking u = {.is_alone = is_alone, .members = malloc((size_t)(r->manifest->count + 1) * sizeof(int64_t))};
+  unpacking u = {.is_alone = is_alone,
+                 .members = malloc((size_t)(r->manifest->count + 1) * sizeof(batch_wanted))};
   if (!u.members)
     batch_break((batch_fail(r->error, "out of memory: free some"), r));
   for (int64_t i = 0; i < r->manifest->count && !batch_run_stops(r);)
@@ -185,7 +206,7 @@ static void run_archives(run *r, bool (*wanted)(const run *r, int64_t i), int jo
       i = collect_members(r, &u, i, wanted);
       if (is_alone)
         for (int64_t m = 0; m < u.count; m++)
-          r->needs_more[u.members[m]] = false;
+          r->needs_more[u.members[m].item] = false;
       run_archive(r, &u, jobs);
     } else
       i++;
@@ -279,7 +300,8 @@ static bool prepare(run *r, const char *journal) {
   r->ending = malloc(BATCH_ENDING_BYTES);
   if (!r->contents || !r->needs_more || !r->slots || !r->ending)
     return batch_fail(r->error, "out of memory: free some");
-  return batch_replay(r->manifest, r->contents, r->settings, journal, r->error);
+  return batch_replay(r->manifest, r->contents, r->settings, journal, r->error) &&
+         batch_changes_beside(r->manifest, r->settings, r->error);
 }
 
 static bool note_run(run *r, const char *event) {

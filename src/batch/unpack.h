@@ -9,7 +9,9 @@
 typedef struct batch_unpacked {
   bool is_end;
   uint64_t bytes;
-  char name[BATCH_MEMBER_MAX];
+  int64_t place;
+  batch_member_kind kind;
+  char name[BATCH_MEMBER_MAX], target[BATCH_MEMBER_MAX];
   char problem[256]; /**< with is_end: why it ends before its end; else why there are no bytes */
 } batch_unpacked;
 

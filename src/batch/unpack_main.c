@@ -76,23 +76,33 @@ static bool wait_for_taker(int channel) {
   return got == 1;
 }
 
-static bool hand_over(struct archive *archive, struct archive_entry *entry, uint64_t most, int channel) {
-  const char *name = archive_entry_pathname(entry);
-  bool is_link = archive_entry_hardlink(entry) != NULL;
-  batch_unpacked head = {.is_end = false};
-  if (!is_link && archive_entry_filetype(entry) != AE_IFREG)
+static void take_name(char out[BATCH_MEMBER_MAX], const char *name) {
+  strcpy(out, name && strlen(name) < BATCH_MEMBER_MAX ? name : "a name that cannot be read");
+}
+
+static batch_member_kind kind_of(struct archive_entry *entry) {
+  return archive_entry_hardlink(entry)               ? BATCH_MEMBER_LINK
+         : archive_entry_filetype(entry) == AE_IFREG ? BATCH_MEMBER_FILE
+                                                     : BATCH_MEMBER_OTHER;
+}
+
+/** Of links and the like it is told that they are there; their bytes are another member's, or none. */
+static bool hand_over(struct archive *archive, struct archive_entry *entry, int64_t place, uint64_t most,
+                      int channel) {
+  static batch_unpacked head;
+  head = (batch_unpacked){.place = place, .kind = kind_of(entry)};
+  bool is_folder = head.kind == BATCH_MEMBER_OTHER && archive_entry_filetype(entry) == AE_IFDIR;
+  if (is_folder || (most > 0 && head.kind != BATCH_MEMBER_FILE))
     return true;
-  if (!name || strlen(name) >= sizeof head.name)
-    name = "a name that cannot be read";
-  strcpy(head.name, name);
-  if (is_link)
-    snprintf(head.problem, sizeof head.problem, "it is a link to another member of the archive");
+  take_name(head.name, archive_entry_pathname(entry));
+  if (head.kind == BATCH_MEMBER_LINK)
+    take_name(head.target, archive_entry_hardlink(entry));
   head.bytes = archive_entry_size_is_set(entry) && archive_entry_size(entry) > 0
                    ? (uint64_t)archive_entry_size(entry)
                    : 0;
   if (!wait_for_taker(channel))
     return false;
-  int bytes = most > 0 && !is_link ? take_bytes(archive, &head, most) : -1;
+  int bytes = most > 0 ? take_bytes(archive, &head, most) : -1;
   bool good = send_over(channel, &head, bytes);
   if (bytes >= 0)
     close(bytes);
@@ -113,8 +123,9 @@ static void unpack(const char *path, uint64_t most, int channel) {
     got = archive_read_open_filename(archive, path, BLOCK);
   }
   if (got == ARCHIVE_OK)
-    while ((got = archive_read_next_header(archive, &entry)) >= ARCHIVE_WARN && got != ARCHIVE_EOF)
-      if (!hand_over(archive, entry, most, channel))
+    for (int64_t place = 0;
+         (got = archive_read_next_header(archive, &entry)) >= ARCHIVE_WARN && got != ARCHIVE_EOF; place++)
+      if (!hand_over(archive, entry, place, most, channel))
         return;
   if (got != ARCHIVE_EOF)
     snprintf(end.problem, sizeof end.problem, "the archive is damaged: %s",

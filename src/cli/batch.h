@@ -64,9 +64,22 @@ json_t *batch_make_job(const batch_item *item, uint64_t memory, void *maker, bat
 int batch_do_job(const char *request, int result, void *maker);
 /** What decides about the bytes of outputs, for the plan. */
 json_t *batch_make_settings(const batch_request *given);
+/** Whether something is made of the colours of a mesh with these options of its own, which may be NULL. */
+bool batch_reads_colors(const batch_request *given, const char *options);
 /** "voxmend voxelize a.off -o a.binvox ...": repeats a mesh alone, writing to the present folder; to be
  * freed. */
 char *batch_command_line(const batch_item *item, const batch_maker *maker);
+
+/* ---- batch_companions.c ---- */
+
+/**
+ * Whether what a mesh file means depends on files beside it: an .obj with materials where colours are wanted,
+ * or a .glb whose buffers or pictures are not in it. True, too, where that cannot be told.
+ */
+bool batch_refers_to_others(const char *path, bool with_colors);
+/** A digest of a file, or folder of files, and of the .json beside it; NULL if it is not there. To be freed.
+ */
+char *batch_file_digest(const char *path);
 
 /* ---- batch_try.c: commands in a child ---- */
 

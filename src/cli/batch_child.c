@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** In a child: goes through the commands of a job and says what came of it. */
+#include "batch/companions.h"
 #include "batch/digest.h"
 #include "batch/outputs.h"
 #include "cli/batch.h"
@@ -125,10 +126,21 @@ static void add_warnings(json_t *result, const json_t *report, const json_t *job
   }
 }
 
+/** What the commands of a job have in common. */
+typedef struct making {
+  const json_t *job;
+  json_t *result, *reports;
+  json_t *companions; /**< names of files that were read beside the mesh */
+} making;
+
 /** Runs a command; false after a failure, which is told in the result. */
-static bool do_command(json_t *result, json_t *reports, const json_t *job, const json_t *command) {
+static bool do_command(const making *m, const json_t *command) {
+  const json_t *job = m->job;
+  json_t *result = m->result;
   const char *member = batch_json_text(job, "member");
-  cli_capture capture = {.format = member ? batch_extension(member) : NULL, .error = VXM_ERROR_INIT};
+  cli_capture capture = {.format = member ? batch_extension(member) : NULL,
+                         .companions = member ? NULL : m->companions,
+                         .error = VXM_ERROR_INIT};
   int count;
   char **words = words_of(command, &count);
   if (!words || count == 0)
@@ -137,7 +149,7 @@ static bool do_command(json_t *result, json_t *reports, const json_t *job, const
   int status = cli_capture_command(words[0], count, words, &capture);
   if (status == CLI_DONE && capture.report) {
     json_object_set_new(result, words[0], short_report(capture.report));
-    json_object_set_new(reports, words[0], lasting(capture.report));
+    json_object_set_new(m->reports, words[0], lasting(capture.report));
     add_warnings(result, capture.report, job);
   } else
     tell_failure(result, &capture, words[0], member ? "<stdin>" : batch_json_text(job, "input"), job);
@@ -192,14 +204,24 @@ static bool write_report(json_t *result, const json_t *job, json_t *reports, con
 
 /* ---- A job ---- */
 
+/** Behind the work, as the digest of the mesh. */
+static void tell_companions(json_t *result, const json_t *job, const json_t *names) {
+  json_t *companions =
+      json_array_size(names) > 0 ? batch_companions_describe(batch_json_text(job, "input"), names) : NULL;
+  if (companions)
+    json_object_set_new(result, "companions", companions);
+}
+
 static bool do_commands(json_t *result, const json_t *job, const char *root) {
-  json_t *reports = json_object(), *command;
+  const making m = {job, result, json_object(), json_array()};
+  json_t *command;
   size_t c;
   bool good = true;
-  json_array_foreach(json_object_get(job, "commands"), c, command) good =
-      good && do_command(result, reports, job, command);
-  good = good && write_report(result, job, reports, root);
-  json_decref(reports);
+  json_array_foreach(json_object_get(job, "commands"), c, command) good = good && do_command(&m, command);
+  good = good && write_report(result, job, m.reports, root);
+  tell_companions(result, job, m.companions);
+  json_decref(m.companions);
+  json_decref(m.reports);
   return good;
 }
 
@@ -207,12 +229,15 @@ static bool digest_input(json_t *result, const json_t *job) {
   char digest[BATCH_DIGEST];
   uint64_t bytes;
   bool is_member = json_object_get(job, "member") != NULL;
-  bool good = is_member ? batch_digest_open(digest, &bytes, STDIN_FILENO)
-                        : batch_digest_file(digest, &bytes, batch_json_text(job, "input"));
+  const char *path = batch_json_text(job, "input");
+  bool good =
+      is_member ? batch_digest_open(digest, &bytes, STDIN_FILENO) : batch_digest_file(digest, &bytes, path);
   if (good) {
     json_object_set_new(result, "sha256", json_string(digest));
     json_object_set_new(result, "bytes", json_integer((json_int_t)bytes));
   }
+  if (good && !is_member && batch_refers_to_others(path, json_is_true(json_object_get(job, "colors"))))
+    json_object_set_new(result, "refers_to_others", json_true());
   return good;
 }
 
@@ -233,13 +258,17 @@ static json_t *make_outputs(const json_t *job, const char *root) {
   return result;
 }
 
-static json_t *digest_files(const json_t *paths) {
+/** Of what is to be compared with others: "" for a file that cannot be read, or that means something else in
+ * another folder. */
+static json_t *digest_files(const json_t *paths, const json_t *options, const batch_maker *maker) {
   json_t *result = json_object(), *digests = json_array(), *path;
   size_t p;
   json_array_foreach(paths, p, path) {
     char digest[BATCH_DIGEST] = "";
     uint64_t bytes;
-    if (!batch_digest_file(digest, &bytes, json_string_value(path)))
+    const char *name = json_string_value(path), *own = json_string_value(json_array_get(options, p));
+    if (batch_refers_to_others(name, batch_reads_colors(maker->given, own)) ||
+        !batch_digest_file(digest, &bytes, name))
       digest[0] = '\0';
     json_array_append_new(digests, json_string(digest));
   }
@@ -262,12 +291,12 @@ static bool say(int descriptor, const char *text) {
 }
 
 int batch_do_job(const char *request, int descriptor, void *payload) {
-  (void)payload;
   json_t *job = json_loads(request, 0, NULL), *result;
   if (!job)
     return 1;
   const json_t *paths = json_object_get(job, "hash");
-  result = paths ? digest_files(paths) : make_outputs(job, batch_json_text(job, "root"));
+  result = paths ? digest_files(paths, json_object_get(job, "options"), payload)
+                 : make_outputs(job, batch_json_text(job, "root"));
   char *text = json_dumps(result, JSON_COMPACT | JSON_REAL_PRECISION(17));
   fflush(NULL);
   return text && say(descriptor, text) ? 0 : 1;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** A mesh of a batch: which commands it goes through. */
+#include "batch/plan.h"
 #include "cli/batch.h"
 
 #include <inttypes.h>
@@ -61,6 +62,14 @@ static bool can_be_viewed(const char *format) {
   return (vxm_grid_format_traits(format) & VXM_FORMAT_READ) != 0;
 }
 
+bool batch_reads_colors(const batch_request *given, const char *options) {
+  bool reads = options && strstr(options, "--col"); /* names may be shortened */
+  for (int w = 0; w < given->grid_options.count; w++)
+    reads = reads || strcmp(given->grid_options.words[w], "--color=mesh") == 0;
+  bool draws_mesh = given->products[BATCH_PICTURE] && (given->no_grid || !can_be_viewed(given->format));
+  return reads || draws_mesh;
+}
+
 /** Options of one mesh may say how its grid is made, and not what is written where. Names may be shortened.
  */
 static bool check_own(const batch_words *words, int first, batch_error *error) {
@@ -78,11 +87,44 @@ static bool check_own(const batch_words *words, int first, batch_error *error) {
   return true;
 }
 
+/** The number behind "--model" in words from the first on, 0 without; false where it is none. */
+static bool model_in(const batch_words *words, int first, int64_t *model) {
+  static const char option[] = "--model";
+  size_t length = strlen(option);
+  *model = 0;
+  for (int w = first; w < words->count; w++) {
+    const char *word = words->words[w], *value = NULL;
+    if (strncmp(word, option, length) != 0)
+      continue;
+    if (word[length] == '=')
+      value = word + length + 1;
+    else if (!word[length])
+      value = w + 1 < words->count ? words->words[++w] : "";
+    if (value && !cli_read_integer(model, value, 0, UINT32_MAX))
+      return false;
+  }
+  return true;
+}
+
+/** Models are counted up from the number that the options have, as 'voxmend augment' counts those of a
+ * folder: they would all be turned alike else. It depends on the plan alone, not on what is made when. */
+static bool add_model(batch_words *words, int first, const batch_item *item, batch_error *error) {
+  int64_t model;
+  if (!model_in(words, first, &model))
+    return true; /* augment says what is wrong with it */
+  model += item->number;
+  if (model > UINT32_MAX)
+    return batch_fail(error, "its model number, %" PRId64 ", goes beyond 4294967295: lower --model", model);
+  return batch_words_add(words, "--model=%" PRId64, model) || batch_fail(error, "out of memory: free some");
+}
+
 /** The options of a product, and those of the item behind them. */
 static bool add_options(batch_words *words, const batch_request *given, batch_product product,
                         const batch_item *item, batch_error *error) {
+  int before = words->count;
   if (product != BATCH_GRID)
-    return batch_words_split(words, given->products[product], error);
+    return batch_words_split(words, given->products[product], error) &&
+           (product != BATCH_VARIANTS || add_model(words, before, item, error));
   for (int w = 0; w < given->grid_options.count; w++)
     if (!batch_words_add(words, "%s", given->grid_options.words[w]))
       return batch_fail(error, "out of memory: free some");
@@ -165,6 +207,7 @@ json_t *batch_make_job(const batch_item *item, uint64_t memory, void *payload, b
                           json_array(), "outputs", json_array());
   if (item->member)
     json_object_set_new(job, "member", cli_json_text(item->member));
+  json_object_set_new(job, "colors", json_boolean(batch_reads_colors(maker->given, item->options)));
   bool good = job != NULL;
   for (int p = 0; good && p < BATCH_PRODUCTS; p++)
     if (is_wanted(maker->given, (batch_product)p))
@@ -184,8 +227,27 @@ json_t *batch_make_job(const batch_item *item, uint64_t memory, void *payload, b
   return NULL;
 }
 
+/** Notes the bytes of the file that an option of grids names, if it does, and of the description beside it.
+ */
+static void add_file(json_t *settings, const batch_request *given, const char *option) {
+  const char *path = NULL;
+  size_t length = strlen(option);
+  for (int w = 0; w < given->grid_options.count; w++)
+    if (strncmp(given->grid_options.words[w], option, length) == 0 &&
+        given->grid_options.words[w][length] == '=')
+      path = given->grid_options.words[w] + length + 1;
+  bool is_word = path && strcmp(option, "--color") == 0 && !strchr(path, '.'); /* such as "mesh" */
+  char *key = NULL, *digest = path && !is_word ? batch_file_digest(path) : NULL;
+  if (digest && asprintf(&key, BATCH_FILE_OF "%s", option) >= 0)
+    json_object_set_new(settings, key, json_string(digest));
+  free(key);
+  free(digest);
+}
+
 json_t *batch_make_settings(const batch_request *given) {
   json_t *settings = json_object();
+  add_file(settings, given, "--like");
+  add_file(settings, given, "--color");
   for (int p = 0; p < BATCH_PRODUCTS; p++) {
     char *text =
         p == BATCH_GRID ? batch_words_text(given->grid_options.words, given->grid_options.count) : NULL;

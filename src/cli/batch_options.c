@@ -44,7 +44,9 @@ const cli_option batch_options[] = {
      "write the repaired meshes too, with these options of 'voxmend repair', such as\n"
      "\"--level closed --format ply\""},
     {KEY_REMESH, "remesh", "OPTIONS", "write meshes by 'voxmend remesh' too, with these options"},
-    {KEY_AUGMENT, "augment", "OPTIONS", "write a folder of variants of each by 'voxmend augment' too"},
+    {KEY_AUGMENT, "augment", "OPTIONS",
+     "write a folder of variants of each by 'voxmend augment' too; model numbers count from\n"
+     "its --model on, in the order of names"},
     {KEY_VIEW, "view", "OPTIONS", "write a picture of each grid by 'voxmend view' too"},
     {KEY_REPORTS, "reports", NULL,
      "write the report of each mesh beside what is made of it, as .report.json"},

@@ -85,6 +85,7 @@ typedef struct cli_written {
 typedef struct cli_capture {
   const char *format; /**< of meshes from standard input; NULL = by their content */
   json_t *report;     /**< in place of --json, to be released; NULL after a failure */
+  json_t *companions; /**< array to which names of files are added that were read beside a mesh; or NULL */
   vxm_error error;    /**< code VXM_OK where its line was on standard error alone */
 } cli_capture;
 
@@ -224,6 +225,8 @@ void cli_warn(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 /** The warnings from reading a file, and from repairing it, but for the first, which have been told. */
 void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh, int64_t told);
 void cli_warn_grid(cli_run *cli, const char *path, const vxm_grid *grid);
+/** Tells who runs the command which files were read beside a mesh. */
+void cli_note_companions(cli_run *cli, const vxm_mesh *mesh);
 /** A row of a summary, "label  text", to cli->text. */
 void cli_row(const cli_run *cli, const char *label, const char *format, ...) CLI_PRINTF(3, 4);
 /** A text of a stranger, such as the name of a file, to cli->text: without control codes, and as wide at

@@ -316,6 +316,7 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
   vxm_mesh *raw = NULL;
   if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
+  cli_note_companions(cli, raw);
   cli_warn_mesh(cli, given->input, raw, 0);
   cli_defects wanted = given->defects; /* the repair counts intersections itself */
   wanted.intersections = wanted.intersections && (wanted.list || wanted.locate);

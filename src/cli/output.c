@@ -237,6 +237,12 @@ static char *report_text(cli_run *cli, const json_t *report) {
   return NULL;
 }
 
+void cli_note_companions(cli_run *cli, const vxm_mesh *mesh) {
+  json_t *names = cli->capture ? cli->capture->companions : NULL;
+  for (int64_t c = 0; names && c < vxm_mesh_companion_count(mesh); c++)
+    json_array_append_new(names, cli_json_text(vxm_mesh_companion(mesh, c)));
+}
+
 static int write_report(cli_run *cli, const char *text) {
   vxm_status status = vxm_file_write(cli->context, cli->report, text, strlen(text), &cli->error);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);

@@ -109,6 +109,7 @@ int cli_read_divided(cli_run *cli, cli_input *input, const char *path, vxm_label
   double start = cli_clock();
   if (vxm_mesh_read_with(&input->mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
+  cli_note_companions(cli, input->mesh);
   cli_warn_mesh(cli, path, input->mesh, 0);
   int64_t told = vxm_mesh_warning_count(input->mesh);
   snprintf(input->format, sizeof input->format, "%s", vxm_mesh_format(input->mesh));

@@ -39,6 +39,9 @@ void vxm_soup_destroy(vxm_soup *soup) {
   for (size_t t = 0; t < soup->tag_count; t++)
     vxm_free(context, soup->tags[t]);
   vxm_free(context, soup->tags);
+  for (size_t c = 0; c < soup->companion_count; c++)
+    vxm_free(context, soup->companions[c]);
+  vxm_free(context, soup->companions);
   vxm_appearance_destroy(soup->appearance);
   vxm_free(context, soup->part_changes);
   vxm_free(context, soup->part_states);
@@ -124,6 +127,25 @@ vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uin
   copy[length] = '\0';
   *tag = (uint32_t)soup->tag_count;
   soup->tags[soup->tag_count++] = copy;
+  return VXM_OK;
+}
+
+vxm_status vxm_soup_add_companion(vxm_soup *soup, const char *name, vxm_error *error) {
+  for (size_t c = 0; c < soup->companion_count; c++)
+    if (strcmp(soup->companions[c], name) == 0)
+      return VXM_OK;
+  vxm_status status = vxm_grow(soup->context, (void **)&soup->companions, &soup->companion_capacity,
+                               soup->companion_count + 1, sizeof *soup->companions, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_error local = VXM_ERROR_INIT;
+  char *copy = vxm_alloc(soup->context, strlen(name) + 1, 1, &local);
+  if (!copy) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  strcpy(copy, name);
+  soup->companions[soup->companion_count++] = copy;
   return VXM_OK;
 }
 

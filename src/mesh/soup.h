@@ -33,6 +33,8 @@ struct vxm_mesh {
   size_t vertex_capacity, face_capacity, corner_capacity, tag_capacity; /**< room while a soup grows */
   const char *format;                                                   /**< static text, such as "off" */
   vxm_warnings warnings;
+  char **companions; /**< companion_count names of other files that were opened to read it, each a block */
+  size_t companion_count, companion_capacity;
   vxm_appearance *appearance; /**< of the faces as they were read; made before reading where it is wanted */
   uint32_t
       *face_parts; /**< face_count: the part of the mesh that was repaired which each comes from, or NULL */
@@ -52,8 +54,8 @@ struct vxm_mesh {
 vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *format, vxm_error *error);
 /** Same as vxm_mesh_destroy; NULL is allowed. */
 void vxm_soup_destroy(vxm_soup *soup);
-/** Copies all but the appearance, which is that of the mesh as read, sets of faces, and what a repair has
- * found out; warnings included. */
+/** Copies all but the appearance and companions, which are those of the mesh as read, sets of faces, and what
+ * a repair has found out; warnings included. */
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
 
 /** Makes room for at least so many elements in all (half as many again where it grows). */
@@ -66,6 +68,9 @@ vxm_status vxm_soup_add_vertices(vxm_soup *soup, const vxm_soup *from, vxm_error
 vxm_status vxm_soup_add_face(vxm_soup *soup, const uint32_t *corners, size_t count, vxm_error *error);
 /** Adds a tag name (copied) and gives its number. */
 vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uint32_t *tag, vxm_error *error);
+
+/** Notes another file that is opened to read it, once (the name is copied). */
+vxm_status vxm_soup_add_companion(vxm_soup *soup, const char *name, vxm_error *error);
 
 /** Corners of a face. */
 static inline const uint32_t *vxm_face(const vxm_soup *soup, size_t face, size_t *count) {

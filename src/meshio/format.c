@@ -29,13 +29,16 @@ static const vxm_format *by_name(const char *name) {
   return NULL;
 }
 
-static const vxm_format *by_extension(const char *path) {
-  const char *extension = vxm_path_extension(path);
+static const vxm_format *of_extension(const char *extension) {
   for (size_t f = 0; f < FORMATS; f++)
     for (size_t e = 0; e < 2; e++)
       if (formats[f].extensions[e] && vxm_text_equal_nocase(extension, formats[f].extensions[e]))
         return &formats[f];
   return NULL;
+}
+
+static const vxm_format *by_extension(const char *path) {
+  return of_extension(vxm_path_extension(path));
 }
 
 /** What a file is that is no mesh, or NULL. */
@@ -69,15 +72,28 @@ static choice choose(const unsigned char *data, size_t size, const char *name) {
   return chosen;
 }
 
-/** The format that the caller names, in the form that the content has; false if there is none. */
+/** The format that the caller names, also by an extension, in the form that the content has; false if there
+ * is none. */
 static bool choose_named(choice *out, const unsigned char *data, size_t size, const char *format) {
   *out = (choice){.own = by_name(format)};
+  if (!out->own)
+    out->own = of_extension(format);
   if (out->own)
     return true;
   const vxm_external_format *told = vxm_external_format_by_content(data, size);
-  bool is_form = told && vxm_text_equal_nocase(told->name, format);
-  out->foreign = is_form ? told : vxm_external_format_by_name(format);
+  const vxm_external_format *named = vxm_external_format_by_name(format);
+  if (!named)
+    named = vxm_external_format_by_extension(format);
+  bool is_form = told && named && strcmp(told->name, named->name) == 0;
+  out->foreign = is_form ? told : named;
   return out->foreign != NULL;
+}
+
+/** The extension that the library goes by: that of the name, or what the caller says where the name has none
+ * of the format. */
+static const char *extension_for(const vxm_external_format *format, const char *name, const char *told) {
+  const char *own = vxm_path_extension(name);
+  return told && vxm_external_format_by_extension(own) != format ? told : own;
 }
 
 #define GRIDS_GO_TO "'voxmend view' and 'convert' take grids, and 'info' by their names"
@@ -166,7 +182,8 @@ static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t s
     return refuse_unknown(data, size, name, error);
   const vxm_reader_request file = {
       .data = data, .size = size, .name = name, .deflection = options->deflection};
-  return vxm_external_format_read(soup, chosen.foreign, vxm_path_extension(name), &file, references, error);
+  return vxm_external_format_read(soup, chosen.foreign, extension_for(chosen.foreign, name, options->format),
+                                  &file, references, error);
 }
 
 vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
@@ -190,6 +207,7 @@ static vxm_status read_with(vxm_soup **out, vxm_context *context, const unsigned
   vxm_status status = vxm_soup_create(&soup, context, "", error);
   if (status != VXM_OK)
     return status;
+  references->soup = soup;
   unsigned char *text = NULL;
   if (vxm_utf16_is(data, size)) {
     size_t text_size;

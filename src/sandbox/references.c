@@ -104,6 +104,12 @@ int vxm_reference_open(vxm_references *references, const char *name, uint64_t la
   references->asked++;
   *size = 0;
   int descriptor = look_up(references, name, largest, size, &reason);
+  /* What is not noted is not read: who asks what a mesh is made of gets all of it. */
+  if (descriptor >= 0 && references->soup && vxm_soup_add_companion(references->soup, name, NULL) != VXM_OK) {
+    close(descriptor);
+    descriptor = -1;
+    reason = "there is no memory for it";
+  }
   if (descriptor < 0)
     note_refusal(references, name, reason);
   return descriptor;

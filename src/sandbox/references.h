@@ -9,6 +9,7 @@
 
 #include "base/context.h"
 #include "base/warnings.h"
+#include "mesh/soup.h"
 
 /** Where the files of a mesh may lie, and what was asked for so far. Start from VXM_REFERENCES_NONE. */
 typedef struct vxm_references {
@@ -19,6 +20,7 @@ typedef struct vxm_references {
   uint64_t refused; /**< of them */
   char first[VXM_WARNING_LENGTH]; /**< the first that was refused, and why */
   vxm_warnings warnings;          /**< a line for each that was refused, as far as there is room */
+  vxm_soup *soup;                 /**< which notes what was opened, or NULL */
 } vxm_references;
 
 /** For a mesh that is in memory. */

@@ -80,7 +80,8 @@ typedef enum vxm_external {
 /** How a mesh file is read. */
 typedef struct vxm_mesh_read_options {
   size_t size;        /**< as the initializer sets it */
-  const char *format; /**< as vxm_mesh_format says, such as "off" or "step"; NULL = by content, then name */
+  const char *format; /**< as vxm_mesh_format says, such as "off" or "step", or an extension, such as "glb";
+                         NULL = by content, then name */
   double deflection;  /**< STEP and IGES: how far triangles may lie from a curved surface, as a part of the
                          model's diagonal, at most 1; 0 = 0.001 */
   vxm_external external; /**< files that the mesh refers to */
@@ -210,6 +211,12 @@ VXM_API const char *vxm_mesh_format(const vxm_mesh *mesh);
 VXM_API int64_t vxm_mesh_warning_count(const vxm_mesh *mesh);
 /** One of them; "" if there is none of this number. */
 VXM_API const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index);
+/** Other files that were opened to read it: buffers of a glTF, and with `colors` .mtl files and textures. 0
+ * of a mesh that another was made into. */
+VXM_API int64_t vxm_mesh_companion_count(const vxm_mesh *mesh);
+/** The name of one as the mesh has it, relative to its folder but for a '/' in front; "" if there is none of
+ * this number. */
+VXM_API const char *vxm_mesh_companion(const vxm_mesh *mesh, int64_t index);
 
 /* ---- Census: what is wrong with a mesh ---- */
 

@@ -192,6 +192,8 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_mesh_format, 1, 1, GIVES_TEXT(vxm_mesh_format(P(0, mesh))))                                        \
   X(vxm_mesh_warning_count, 1, 1, GIVES(vxm_mesh_warning_count(P(0, mesh))))                               \
   X(vxm_mesh_warning, 1, 1, GIVES_TEXT(vxm_mesh_warning(P(0, mesh), 0)))                                   \
+  X(vxm_mesh_companion_count, 1, 1, ANYTHING(vxm_mesh_companion_count(P(0, mesh))))                        \
+  X(vxm_mesh_companion, 1, 1, ANYTHING(vxm_mesh_companion(P(0, mesh), 0)))                                 \
   X(vxm_mesh_census, 3, 3, vxm_mesh_census(P(0, &out.census), P(1, mesh), P(2, &error)))                   \
   X(vxm_mesh_repair, 5, 5,                                                                                 \
     vxm_mesh_repair(P(0, &out.mesh), P(1, &out.repair), P(2, mesh), P(3, &repair), P(4, &error)))          \

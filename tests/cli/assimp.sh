@@ -164,4 +164,25 @@ if grep -q "^#define HAVE_PNG" "$BUILDDIR/config.h"; then
     run "voxmend voxelize $mesh.gltf -o c.npy -q -r 8 --mode surface --color mesh && \"\${TEST_PYTHON:-python3}\" \"\$SRCDIR/tests/cli/colors.py\" list c.npy"
   done
 fi
+# A .glb whose picture lies beside it is no duplicate of one in another folder; one that has all in itself is.
+le() {
+  printf "$(printf '\\%03o\\%03o\\0\\0' $(($1 & 255)) $(($1 >> 8)))"
+}
+text=$(tr -d '\n' <models/wedge.gltf | sed 's/,"uri":"wedge.bin"}]/}],"images":[{"uri":"skin.png"}]/')
+while [ $((${#text} % 4)) -ne 0 ]; do text="$text "; done
+printf "$zero$zero$zero$one$zero$zero$zero$one$zero$zero$zero$one" >wedge.bin
+printf '\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0' >>wedge.bin
+mkdir -p apart/a apart/b apart/c apart/d
+for folder in a b; do
+  { printf glTF; le 2; le $((28 + ${#text} + 72)); le ${#text}; printf 'JSON%s' "$text"; le 72; printf 'BIN\0'; cat wedge.bin; } >apart/$folder/m.glb
+done
+cp in/stool.glb apart/c/
+cp in/stool.glb apart/d/
+run 'voxmend batch apart -o apart-out -r 8 --format npy --pictures 0 | grep result; grep -o "duplicate_of\":\"[^\"]*" apart-out/.batch/journal-0-of-1.jsonl'
+# The buffer of a .gltf belongs to what was made of it.
+mkdir buffers
+cp models/wedge.gltf buffers/
+cp wedge.bin buffers/
+{ head -c 44 wedge.bin; printf '\0\0\0\077'; tail -c 24 wedge.bin; } >half.bin
+run 'voxmend batch buffers -o buffers-out -r 8 --format npy --pictures 0 | grep result && cp half.bin buffers/wedge.bin && voxmend batch buffers -o buffers-out -r 8 --format npy --pictures 0'
 finish

@@ -103,9 +103,48 @@ for name in train/a test/b; do cp in/cube.off splits/chair/$name.off; done
 for name in extra/a val/b train/c; do cp in/torus.off splits/chair/$name.off; done
 run 'voxmend batch splits -o once -r 8 -q && grep -o "\"status\":\"duplicate\"[^}]*\"item\":\"[^\"]*\"" once/index.html | sed "s/.*:\"//" | sort'
 run 'grep -o "\"picture\":\"" once/index.html | wc -l'
+# With another .mtl beside them equal bytes are no duplicates where colours are made of them, and are where none are.
+mkdir -p paint/a paint/b
+for folder in a b; do
+  printf 'mtllib m.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >paint/$folder/m.obj
+done
+printf 'newmtl paint\nKd 1 0 0\n' >paint/a/m.mtl
+printf 'newmtl paint\nKd 0 0 1\n' >paint/b/m.mtl
+printf 'path,id,options\na/m.obj,a,--color mesh\nb/m.obj,b,--color mesh\n' >paint/own.csv
+run 'voxmend batch paint -o painted -r 8 --format npy --color mesh --pictures 0 | grep result; cmp painted/a/m.npy painted/b/m.npy'
+run 'voxmend voxelize paint/b/m.obj -o m.npy -r 8 --color mesh -q && cmp m.npy painted/b/m.npy'
+run 'rm painted/b/m.npy && voxmend batch paint -o painted -r 8 --format npy --color mesh --pictures 0 | grep result; cmp m.npy painted/b/m.npy'
+run 'voxmend batch paint/own.csv -o own-paint -r 8 --format npy --pictures 0 | grep result; cmp m.npy own-paint/b.npy'
+run 'voxmend batch paint -o plain -r 8 --format npy --pictures 0 | grep result'
+# What was read beside a mesh belongs to it, and so do files that options name.
+again='voxmend batch paint -o painted -r 8 --format npy --color mesh --pictures 0'
+run 'touch -d 2001-01-01 paint/*/m.mtl && statuses'
+run 'printf "newmtl paint\nKd 0 1 0\n" >paint/a/m.mtl && statuses'
+run 'rm painted/a/m.npy && statuses && voxmend voxelize paint/a/m.obj -o m.npy -r 8 --color mesh -q && cmp m.npy painted/a/m.npy'
+run 'rm paint/b/m.mtl && statuses'
+run 'voxmend voxelize in/torus.off -o like.npy -r 8 -q && voxmend batch data/a/cube.off -o liked --like like.npy -q && voxmend batch data/a/cube.off -o liked --like like.npy -q'
+run 'voxmend voxelize in/sphere.off -o like.npy -r 8 -q && voxmend batch data/a/cube.off -o liked --like like.npy'
 # Folders of variants have links in them.
 run 'voxmend batch splits -o varied --no-grid --augment "-n 2 -r 8" --pictures 0; voxmend batch verify varied; find varied -name "*.rle" | sort'
 run 'find varied -name "*.rle" -links 1; find varied -name "*.rle" -links 2 | wc -l; find varied -name "*.rle" -links 3 | wc -l'
+# Model numbers are those of 'augment FOLDER', whatever is made when, and where: in a shard, or anew.
+mkdir -p kinds/a kinds/b
+cp in/cube.off kinds/a/
+cp in/sphere.off kinds/b/
+cp in/torus.off kinds/
+options='-n 2 -r 8 --rotate any --scale 0.4 --format npy --model 5'
+each_variant() {
+  (cd counted && find . -name '*.npy' | sort) | while read -r file; do
+    cmp "counted/$file" "$1/${file%/*}.variants/${file##*/}"
+  done
+}
+run 'voxmend augment kinds -o counted $options -q && cut -f 1,2 counted/models.tsv'
+run 'voxmend batch kinds -o numbered --no-grid --augment "$options" -q && each_variant numbered && grep -oE "\"model\":[0-9]+" numbered/.batch/journal-0-of-1.jsonl | sort'
+run 'rm -r numbered/torus.variants && voxmend batch kinds -o numbered --no-grid --augment "$options" -q && each_variant numbered'
+run 'for s in 2 0 1; do voxmend batch kinds -o sharded --no-grid --augment "$options" --shard $s/3 -q; done; each_variant sharded'
+run 'voxmend batch kinds -o beyond --no-grid --augment "-n 2 -r 8 --model 4294967294" --pictures 0 -q; cut -f 1-4 beyond/failures.tsv'
+printf 'OFF\n3 x\n' >kinds/b/z.off
+run 'voxmend batch kinds -o repeated --no-grid --augment "$options" --pictures 0 -q; cut -f 5 repeated/failures.tsv'
 # Other products.
 run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --format obj" --remesh "-r 8" --augment "-n 2 -r 8 --format npy" --view "--size 40x30" --pictures 0'
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'
@@ -117,6 +156,13 @@ cp in/cube.off net/chair/train/chair_1.off
 cp in/torus.off net/chair/test/chair_2.off
 run 'voxmend batch net -o netted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" netted/.batch/plan.jsonl'
 run 'find net -name "*.off" >net.txt && voxmend batch net.txt -o enlisted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" enlisted/.batch/plan.jsonl'
+# A link to nothing costs itself alone where it is named, also by a pattern, and is passed over in a folder.
+mkdir hanging
+cp in/cube.off hanging/a.off
+ln -s nowhere.off hanging/b.off
+run 'voxmend batch "hanging/*.off" -o hung -r 8 --pictures 0; cut -f 1-4 hung/failures.tsv'
+run 'voxmend batch hanging/a.off hanging/b.off -o hung-named -r 8 --pictures 0 | grep result'
+run 'voxmend batch hanging -o hung-folder -r 8 --pictures 0 | grep -E "result|passed"'
 # Inputs are never outputs, and no two outputs are the same.
 mkdir clash
 cp in/cube.off clash/a.off

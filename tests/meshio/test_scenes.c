@@ -89,6 +89,11 @@ static void test_options(void **state) {
   assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.obj", &options, &error),
                    VXM_OK);
   vxm_soup_destroy(soup);
+  options.format = "dae"; /* an extension is a name as well */
+  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "<stdin>", &options, &error),
+                   VXM_OK);
+  assert_string_equal(soup->format, "collada");
+  vxm_soup_destroy(soup);
   options.format = "fbx";
   assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
                    VXM_ERROR_FORMAT);

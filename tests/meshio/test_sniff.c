@@ -146,7 +146,21 @@ static void test_cancel(void **state) {
   bytes_free(&b);
 }
 
-/** The lists of what libraries are given name each extension of the table, and no other. */
+/** Whether a mesh may be said to be of this format: it is another failure that ends the reading of nonsense.
+ */
+static bool is_format_name(const char *word) {
+  static const char nonsense[] = "what is this";
+  vxm_mesh_read_options options = VXM_MESH_READ_OPTIONS_INIT;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_soup *soup;
+  options.format = word;
+  vxm_status status = vxm_meshio_read_with(&soup, NULL, (const unsigned char *)nonsense, strlen(nonsense),
+                                           "<stdin>", &options, &error);
+  assert_int_not_equal(status, VXM_OK);
+  return status != VXM_ERROR_ARGUMENT;
+}
+
+/** The lists of what libraries are given name each extension of the table, and no other; each is a name. */
 static void test_lists(void **state) {
   (void)state;
   static const char *const lists[] = {VXM_ASSIMP_FORMATS, VXM_OCCT_FORMATS};
@@ -158,10 +172,13 @@ static void test_lists(void **state) {
       assert_non_null(format);
       assert_int_equal(format->is_cad, l == 1);
       assert_null(vxm_external_format_refusal(word));
+      assert_true(is_format_name(word));
       for (int e = 0; e < VXM_EXTERNAL_EXTENSIONS && format->extensions[e]; e++)
         assert_non_null(strstr(lists[l], format->extensions[e]));
     }
   }
+  assert_true(is_format_name("STLA"));
+  assert_false(is_format_name("word"));
 }
 
 int main(void) {

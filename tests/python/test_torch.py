@@ -3,6 +3,7 @@
 import gc
 import os
 import pickle
+import shutil
 import tempfile
 import threading
 import unittest
@@ -73,6 +74,17 @@ class Datasets(unittest.TestCase):
             data[15]
         with self.assertRaises(ValueError):
             self.dataset(scale=3)
+
+    def test_hidden(self):
+        """Files that `voxmend batch` passes over, and classes of nothing else."""
+        with tempfile.TemporaryDirectory() as root:
+            for name in ("a/train/x.off", "a/train/._x.off", "a/.old/train/y.off", "a/train/__MACOSX/z.off", "__MACOSX/a/x.off",
+                         ".git/x.off", "b/train/._x.off"):
+                os.makedirs(os.path.dirname(os.path.join(root, name)), exist_ok=True)
+                shutil.copy(sample("torus"), os.path.join(root, name))
+            data = VoxelDataset(root, resolution=8)
+            self.assertEqual(data.classes, ["a"])
+            self.assertEqual([os.path.relpath(file, root) for file in data.files], ["a/train/x.off"])
 
     def test_epochs_and_batches(self):
         data = self.dataset()

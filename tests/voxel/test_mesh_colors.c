@@ -16,8 +16,10 @@
 #include "voxel/labels/surface_mean.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { TRIANGLES = 14, SIDE = 9, VOXELS = SIDE * SIDE * SIDE };
 
@@ -510,11 +512,49 @@ static void test_obj_corners(void **unused) {
   vxm_soup_destroy(soup);
 }
 
+static void write_text(const char *folder, const char *name, const char *text) {
+  char path[4096];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  assert_true(fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+/** What was opened beside a mesh is told, once each, and what is not there is not. */
+static void test_companions(void **unused) {
+  (void)unused;
+  char folder[] = "companions-XXXXXX", path[64];
+  vxm_mesh_read_options options = VXM_MESH_READ_OPTIONS_INIT;
+  vxm_mesh *mesh;
+  assert_non_null(mkdtemp(folder));
+  write_text(folder, "a.obj",
+             "mtllib a.mtl gone.mtl\nmtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write_text(folder, "a.mtl", "newmtl a\nKd 1 0 0\nmap_Kd skin.png\n");
+  write_text(folder, "skin.png", "no picture");
+  snprintf(path, sizeof path, "%s/a.obj", folder);
+  for (int colors = 0; colors < 2; colors++) {
+    options.colors = colors == 1;
+    assert_int_equal(vxm_mesh_read_with(&mesh, NULL, path, &options, NULL), VXM_OK);
+    assert_int_equal(vxm_mesh_companion_count(mesh), 2 * colors);
+    assert_string_equal(vxm_mesh_companion(mesh, 0), colors ? "a.mtl" : "");
+    assert_string_equal(vxm_mesh_companion(mesh, 1), colors ? "skin.png" : "");
+    assert_string_equal(vxm_mesh_companion(mesh, 2), "");
+    vxm_mesh_destroy(mesh);
+  }
+  static const char *const names[] = {"a.obj", "a.mtl", "skin.png"};
+  for (int n = 0; n < 3; n++) {
+    snprintf(path, sizeof path, "%s/%s", folder, names[n]);
+    assert_int_equal(unlink(path), 0);
+  }
+  assert_int_equal(rmdir(folder), 0);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_nearest),    cmocka_unit_test(test_mean),
-                                     cmocka_unit_test(test_border),     cmocka_unit_test(test_threads),
-                                     cmocka_unit_test(test_vertices),   cmocka_unit_test(test_faces),
-                                     cmocka_unit_test(test_binary),     cmocka_unit_test(test_damaged_colors),
-                                     cmocka_unit_test(test_obj_corners)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_nearest),     cmocka_unit_test(test_mean),
+      cmocka_unit_test(test_border),      cmocka_unit_test(test_threads),
+      cmocka_unit_test(test_vertices),    cmocka_unit_test(test_faces),
+      cmocka_unit_test(test_binary),      cmocka_unit_test(test_damaged_colors),
+      cmocka_unit_test(test_obj_corners), cmocka_unit_test(test_companions)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
