@@ -3,6 +3,7 @@
 #include "shapes.h"
 
 #include "base/rng.h"
+#include "voxel/parity/kernels.h"
 #include "voxel/sparse/flipped_nodes.h"
 
 #include <stdlib.h>
@@ -48,12 +49,21 @@ static void check_nodes(vxm_flipped_nodes *nodes, const uint8_t *flips, const bo
   vxm_flipped_nodes_end(nodes);
 }
 
-static void test_every_flip_is_in_its_brick(void **state) {
-  (void)state;
+/** Flips records some at a time, as many as one likes. */
+static void flip_some(vxm_flipped_nodes *nodes, const uint64_t *records, size_t count, vxm_rng *rng) {
+  for (size_t begin = 0, some; begin < count; begin += some) {
+    some = 1 + vxm_rng_below(rng, 300);
+    some = some < count - begin ? some : count - begin;
+    assert_int_equal(vxm_flipped_nodes_flip(nodes, records + begin, some), VXM_OK);
+  }
+}
+
+static void check_flips(void) {
   vxm_rng rng = {516};
   vxm_flipped_nodes nodes;
   uint8_t *flips = malloc(SLAB);
   uint64_t *words = malloc(SLAB / 8);
+  static uint64_t records[4000];
   assert_true(flips && words);
   assert_int_equal(vxm_flipped_nodes_create(&nodes, context, STRIPS, ROW_SHIFT, NULL), VXM_OK);
   for (int round = 0; round < 30; round++) {
@@ -65,14 +75,15 @@ static void test_every_flip_is_in_its_brick(void **state) {
     for (size_t f = 0; f < count; f++) {
       uint64_t record = vxm_rng_below(&rng, by_strip ? 256 * ROW : SLAB);
       uint32_t in_strip = (uint32_t)record;
-      if (round % 3 == 0)
-        assert_int_equal(vxm_flipped_nodes_flip(&nodes, &record, 1), VXM_OK);
+      records[f] = record;
       if (by_strip)
         assert_int_equal(vxm_flipped_nodes_flip_strip(&nodes, &in_strip, 1), VXM_OK);
       words[record / 64] ^= UINT64_C(1) << record % 64;
       flips[record] ^= 1;
       reached[record / 256 / ROW * NODES + record % ROW / 16] = true;
     }
+    if (round % 3 == 0)
+      flip_some(&nodes, records, count, &rng);
     if (round % 3 == 1) {
       memset(reached, 0, sizeof reached); /* of a bitmap what was flipped twice is not told */
       for (size_t r = 0; r < SLAB; r++)
@@ -84,6 +95,16 @@ static void test_every_flip_is_in_its_brick(void **state) {
   vxm_flipped_nodes_destroy(&nodes);
   free(words);
   free(flips);
+}
+
+static void test_every_flip_is_in_its_brick(void **state) {
+  (void)state;
+  const vxm_kernels *builds[4];
+  for (size_t b = 0, count = vxm_kernels_all(builds); b < count; b++) {
+    vxm_kernels_force(builds[b]);
+    check_flips();
+  }
+  vxm_kernels_force(NULL);
 }
 
 int main(void) {

@@ -186,6 +186,57 @@ static void test_many_slabs(void **state) {
   vxm_soup_destroy(soup);
 }
 
+/** A column with dents, closed, of many triangles in any order: so many, and so large, that they are put in
+ * order first. Dents reach the middle here and there, so that some of it is thin. */
+static vxm_soup *dented_column(vxm_rng *rng, double height) {
+  enum { AROUND = 48, RINGS = 48, SIDES = 2 * AROUND * (RINGS - 1), TRIANGLES = SIDES + 2 * AROUND };
+  static uint32_t corners[TRIANGLES][3];
+  vxm_soup *soup = shape_empty(context);
+  for (int r = 0; r < RINGS; r++)
+    for (int a = 0; a < AROUND; a++) {
+      double turn = 2 * 3.14159265358979 * a / AROUND, out = vxm_rng_below(rng, 6) ? 140 : 0.2;
+      out += (double)vxm_rng_below(rng, 1000) / 50;
+      shape_vertex(soup, 170 + out * cos(turn), 170 + out * sin(turn), 5 + (height - 10) * r / (RINGS - 1));
+    }
+  uint32_t low = shape_vertex(soup, 170, 170, 5), high = shape_vertex(soup, 170, 170, height - 5);
+  size_t count = 0;
+  for (uint32_t a = 0; a < AROUND; a++) {
+    uint32_t b = (a + 1) % AROUND, top = AROUND * (RINGS - 1);
+    memcpy(corners[count++], (uint32_t[]){low, b, a}, sizeof *corners);
+    memcpy(corners[count++], (uint32_t[]){high, top + a, top + b}, sizeof *corners);
+    for (uint32_t r = 0; r < top; r += AROUND) {
+      memcpy(corners[count++], (uint32_t[]){r + a, r + b, r + AROUND + b}, sizeof *corners);
+      memcpy(corners[count++], (uint32_t[]){r + a, r + AROUND + b, r + AROUND + a}, sizeof *corners);
+    }
+  }
+  for (; count > 0; count--) {
+    size_t next = vxm_rng_below(rng, count);
+    shape_triangle(soup, corners[next][0], corners[next][1], corners[next][2]);
+    memcpy(corners[next], corners[count - 1], sizeof *corners);
+  }
+  return soup;
+}
+
+static void test_triangles_in_order(void **state) {
+  (void)state;
+  vxm_context *shared = context;
+  vxm_rng rng = {47};
+  const vxm_space space = {{340, 340, 1500}, {0, 0, 0}, {1, 1, 1}};
+  for (int threads = 1; threads < 4; threads += 2) {
+    vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
+    limits.threads = threads;
+    assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
+    vxm_soup *soup = dented_column(&rng, 1500);
+    vxm_model *model;
+    assert_int_equal(vxm_model_create(&model, soup, NULL, NULL), VXM_OK);
+    check_model(model, &space, NULL, "dented column");
+    vxm_model_destroy(model);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+  }
+  context = shared;
+}
+
 /** A thin plate from corner to corner, one of whose sides passes through voxel centres in every so many
  * columns; `turn` says along which axes it lies. */
 static void add_plate(vxm_soup *soup, vxm_rng *rng, int turn) {
@@ -375,6 +426,7 @@ int main(void) {
       cmocka_unit_test(test_cancelling),
       cmocka_unit_test(test_refusals),
       cmocka_unit_test(test_plates_through_centres),
+      cmocka_unit_test(test_triangles_in_order),
       cmocka_unit_test(test_real_meshes),
   };
   return cmocka_run_group_tests(tests, setup, teardown);

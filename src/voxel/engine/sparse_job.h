@@ -3,12 +3,13 @@
 #ifndef VXM_VOXEL_ENGINE_SPARSE_JOB_H
 #define VXM_VOXEL_ENGINE_SPARSE_JOB_H
 
-#include "voxel/parity/snapped_points.h"
+#include "voxel/parity/triangle_order.h"
 
 #include <stdatomic.h>
 
 typedef struct vxm_sparse_job {
   const vxm_triangle_set *triangles;
+  const vxm_triangle_order *order; /**< NULL, or that of the triangles */
   const vxm_snapped_points *placed;
   size_t part_end;          /**< parts 0 to part_end - 1 */
   unsigned roles;           /**< triangles of these roles count, or-ed vxm_triangle_role */

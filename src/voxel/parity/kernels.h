@@ -65,6 +65,11 @@ typedef struct vxm_kernels {
    * each row of bricks what is inside as the node begins, then as it ends. masks[0] are the bricks that are
    * not empty, masks[1] the full ones. Returns the OR of all bricks. */
   uint64_t (*fold_node)(uint64_t bricks[64], uint64_t flipped[64], uint64_t inside[16], uint64_t masks[2]);
+  /** NULL, or flips records in the bricks of nodes with a slot, as vxm_flipped_nodes has them (voxel/sparse/
+   * flipped_nodes.h), eight at a time. Returns how many: at least all but seven of those before the first
+   * whose node has none. */
+  size_t (*flip_nodes)(uint64_t *bricks, const uint32_t *slots, const uint64_t *records, size_t count,
+                       int row_shift);
 } vxm_kernels;
 
 /** The best build that may run (base/cpu.h), or the one forced. */

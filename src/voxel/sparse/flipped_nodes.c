@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/sparse/flipped_nodes.h"
 #include "base/bits.h"
+#include "voxel/parity/kernels.h"
 
 #include <string.h>
 
@@ -57,12 +58,18 @@ typedef struct flipping {
   vxm_status status;
 } flipping;
 
+/** The node of a record, which has a place from now on unless memory runs out. */
+static inline size_t find_node(flipping *f, uint64_t record) {
+  size_t node = (size_t)((record >> (f->shift + 8)) << (f->shift - 4) | (record & f->in_row) >> 4);
+  if (!f->nodes->slots[node] && f->status == VXM_OK)
+    f->status = add_node(f->nodes, node);
+  return node;
+}
+
 static inline void flip(flipping *f, uint64_t record) {
   vxm_flipped_nodes *nodes = f->nodes;
   uint64_t x = record & f->in_row;
-  size_t node = (size_t)((record >> (f->shift + 8)) << (f->shift - 4) | x >> 4);
-  if (!nodes->slots[node] && f->status == VXM_OK)
-    f->status = add_node(nodes, node);
+  size_t node = find_node(f, record);
   if (f->status != VXM_OK)
     return;
   vxm_strip_place place = nodes->places[record >> f->shift & 255];
@@ -75,8 +82,17 @@ static inline flipping begin(vxm_flipped_nodes *nodes) {
 }
 
 vxm_status vxm_flipped_nodes_flip(vxm_flipped_nodes *nodes, const uint64_t *records, size_t count) {
+  enum { SOME = 8 };
+  const vxm_kernels *kernels = vxm_kernels_get();
   flipping f = begin(nodes);
-  for (size_t i = 0; i < count; i++)
+  size_t i = 0;
+  while (kernels->flip_nodes && count - i >= SOME && f.status == VXM_OK) {
+    for (size_t k = i; k < i + SOME; k++)
+      find_node(&f, records[k]);
+    if (f.status == VXM_OK) /* as far as nodes have places */
+      i += kernels->flip_nodes(nodes->bricks, nodes->slots, records + i, count - i, f.shift);
+  }
+  for (; i < count; i++)
     flip(&f, records[i]);
   return f.status;
 }

@@ -147,20 +147,40 @@ static vxm_status unite_elsewhere(vxm_sparse **out, vxm_model_pass *pass, vxm_er
 /** From so many bytes on an octree matters more than room that is kept for the next call. */
 static const uint64_t large_octree = UINT64_C(1) << 27;
 
-/** The solid, straight from the triangles. */
-static vxm_status make_solid(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
-  vxm_status status = unite_elsewhere(out, pass, error);
-  vxm_sparse_job job = job_of(pass);
-  if (status == VXM_OK && !*out)
-    status = unite_directly(out, pass, &job, true, error);
+/** Whether to order the triangles takes less time than it saves: many, with many crossings. Memory is to be
+ * left for what is needed. */
+static bool is_order_wanted(const vxm_voxel_pass *solid) {
+  const size_t least_triangles = 1 << 12, count = solid->analysis->triangles.triangle_count;
+  const double least_crossings = 1 << 22;
+  return count >= least_triangles && count * VXM_ORDER_BYTES <= vxm_memory_left(solid->context) / 8 &&
+         vxm_raster_schedule_placed_bound(&solid->placed, VXM_ROLE_FACE) >= least_crossings;
+}
+
+/** The solid, straight from the triangles, by the CPU where there is none yet. */
+static vxm_status make_of(vxm_sparse **out, vxm_model_pass *pass, const vxm_sparse_job *job,
+                          vxm_error *error) {
+  vxm_status status = *out ? VXM_OK : unite_directly(out, pass, job, true, error);
   if (status == VXM_OK && vxm_octree_bytes(*out) >= large_octree) {
     vxm_workspace_destroy(&pass->workspace);
     pass->workspace = vxm_workspace_of(pass->solid.context);
   }
-  return status == VXM_OK && pass->separating
-             ? vxm_thin_add_sparse(&pass->thin.thin, out, &pass->solid.analysis->triangles,
-                                   &pass->solid.placed, pass->separating, error)
-             : status;
+  return status == VXM_OK && pass->separating ? vxm_thin_add_sparse(&pass->thin.thin, out, job->triangles,
+                                                                    job->placed, pass->separating, error)
+                                              : status;
+}
+
+static vxm_status make_solid(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
+  vxm_status status = unite_elsewhere(out, pass, error);
+  vxm_sparse_job job = job_of(pass);
+  if (status != VXM_OK || !is_order_wanted(&pass->solid))
+    return status == VXM_OK ? make_of(out, pass, &job, error) : status;
+  vxm_triangle_order order;
+  vxm_triangle_order_make(&order, pass->solid.context, job.triangles, job.placed);
+  job.triangles = &order.set;
+  job.order = &order;
+  status = make_of(out, pass, &job, error);
+  vxm_triangle_order_destroy(&order);
+  return status;
 }
 
 /** The faces by the pass's engine; `*out` stays NULL where that is for the CPU. */

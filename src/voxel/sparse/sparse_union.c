@@ -328,9 +328,7 @@ static void shape(sparse_state *state) {
                                  .step = {1, row << SLAB_SHIFT, row},
                                  .slab_axis = 2,
                                  .slab_shift = SLAB_SHIFT,
-                                 .roles = job->roles | (closed ? VXM_ROLES_ALL : 0),
-                                 .triangle_begin = job->triangles->parts[0].begin};
-  state->columns.triangle_end = vxm_roles_end(job->triangles, job->part_end - 1, job->roles);
+                                 .roles = job->roles | (closed ? VXM_ROLES_ALL : 0)};
   int64_t left = n[0] - ((int64_t)state->nodes - 1) * VXM_STRIP_VOXELS;
   for (int b = 0; b < 4; b++)
     state->last[b] =
@@ -389,6 +387,17 @@ static size_t window_slabs(const sparse_state *state) {
   return (size_t)fmin(fmax(wanted, least), slabs);
 }
 
+/** The triangles that may reach into the window. */
+static void choose_triangles(sparse_state *state) {
+  const vxm_sparse_job *job = state->job;
+  vxm_columns *c = &state->columns;
+  const vxm_part *first = job->triangles->parts;
+  c->triangle_begin = first->begin;
+  c->triangle_end = vxm_roles_end(job->triangles, job->part_end - 1, job->roles);
+  if (job->order && job->order->corners && c->triangle_end == first->caps)
+    vxm_triangle_order_slices(job->order, c->begin[2], c->end[2], &c->triangle_begin, &c->triangle_end);
+}
+
 /** Slabs first to end - 1. */
 static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_t first, size_t end,
                             vxm_error *error) {
@@ -397,6 +406,7 @@ static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_
   state->first = first;
   state->columns.begin[2] = (int64_t)first << SLAB_SHIFT;
   state->columns.end[2] = vxm_min((int64_t)end << SLAB_SHIFT, builder->space.dims[2]);
+  choose_triangles(state);
   size_t of_chain = 0;
   vxm_status status = VXM_OK;
   if (state->chain)
