@@ -137,7 +137,7 @@ class RepairReport(Record):
         unparted_vertices: that share a position and could not be moved apart.
         shared_faces: that repeat others and stay, as bodies overlap there.
         lost_parts: closed components that enclose less than before.
-        emptied_parts: closed components that run through themselves, and of whose inside a union has taken something away.
+        emptied_parts: closed components of whose inside a union has taken something away.
         sheets: open components that became plates, or were dropped.
         opened_parts: closed before, open after (with `part_changes`).
         max_displacement: no vertex was moved farther, model units (with `part_changes`).

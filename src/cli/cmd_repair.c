@@ -344,13 +344,11 @@ static const char *advice(const vxm_repair_options *repair) {
 
 static void warn_emptied(cli_run *cli, const char *input, int64_t parts) {
   if (parts > 0)
-    cli_warn(
-        cli,
-        "%s: %lld closed %s, wound the other way; voxmend remesh keeps it, and voxmend voxelize takes the "
-        "mesh as it is",
-        cli_shown(input, "<stdin>"), (long long)parts,
-        parts == 1 ? "part runs through itself, and has lost some of what it enclosed"
-                   : "parts run through themselves, and have lost some of what they enclosed");
+    cli_warn(cli,
+             "%s: the union has taken away some of what %lld closed %s enclosed, as of one that runs through "
+             "itself and is wound the other way there, or lies in a cavity; voxmend remesh keeps it, and "
+             "voxmend voxelize takes the mesh as it is",
+             cli_shown(input, "<stdin>"), (long long)parts, parts == 1 ? "part" : "parts");
 }
 
 static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {

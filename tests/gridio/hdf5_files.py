@@ -37,6 +37,17 @@ def own():
             assert content(name) == content(name.replace("a.", "b.", 1)), (options, name)
         for name in ("a.npy", "b.npy", "a.npy.json", "b.npy.json"):
             os.remove(os.path.join(FOLDER, name))
+    # Numbers of which nothing is said stay such.
+    for name in ("a.h5", "a.nii", "b.npy", "a.nrrd"):
+        if name == "a.h5":
+            numpy.save(os.path.join(FOLDER, "a.npy"), numpy.arange(24, dtype="i4").reshape(2, 3, 4))
+        done = voxmend("convert", {"a.h5": "a.npy", "a.nii": "a.h5", "b.npy": "a.h5", "a.nrrd": "b.npy"}[name], "-o", name, "-q")
+        assert done.returncode == 0, done.stderr
+    with open(os.path.join(FOLDER, "b.npy.json")) as file:
+        assert "values" not in json.load(file)
+    assert b"numbers" not in content("a.nrrd")
+    for name in ("a.npy", "a.h5", "a.nii", "b.npy", "b.npy.json", "a.nrrd"):
+        os.remove(os.path.join(FOLDER, name))
     voxmend("voxelize", "cavity.off", "-r", "17", "-o", "bits.h5", "-q")
     assert voxmend("combine", "bits.h5", "minus", "bits.h5", "-o", "none.h5", "-q").returncode == 0
     assert not convert("none.h5")[0].any() and convert("bits.h5")[0].any()

@@ -253,6 +253,34 @@ static void test_fields(void **state) {
   remove_folder(folder);
 }
 
+/** -0 is another number than 0, alone, in whole blocks and in all of the grid. */
+static void test_signs_of_zero(void **state) {
+  (void)state;
+  char folder[64];
+  make_folder(folder);
+  vxm_context *context = context_with(2, 0, NULL, NULL);
+  vxm_rng rng = {75};
+  const vxm_space space = {{17, 40, 133}, {1, 2, 3}, {0.5, 0.25, 1}};
+  for (int round = 0; round < 4; round++) {
+    vxm_field *field, *back = NULL;
+    vxm_grid *grid = NULL;
+    assert_int_equal(vxm_field_make(&field, context, &space, VXM_FIELD_NUMBERS, VXM_FLOAT32, NULL), VXM_OK);
+    float *values = (float *)field->values;
+    size_t plane = 40 * 133;
+    for (size_t v = 0; v < 17 * plane; v++)
+      values[v] = round == 0 || v < 8 * plane ? -0.0F : vxm_rng_below(&rng, 2) ? -0.0F : (float)(round - 2);
+    assert_int_equal(vxm_gridio_write_field(field, path_in(folder, "a.vdb"), NULL, NULL), VXM_OK);
+    assert_int_equal(vxm_gridio_read_either(&grid, &back, context, path_in(folder, "a.vdb"), NULL), VXM_OK);
+    assert_non_null(back);
+    assert_memory_equal(back->values, field->values, 17 * plane * sizeof *values);
+    assert_false(back->about.is_declared);
+    vxm_field_destroy(back);
+    vxm_field_destroy(field);
+  }
+  vxm_context_destroy(context);
+  remove_folder(folder);
+}
+
 /* ---- Limits and failures ---- */
 
 /** From too little to enough: the limit's own error and no file; and all is given back. */
@@ -506,12 +534,12 @@ static int damage_files(int count, char **paths) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_round_trips),   cmocka_unit_test(test_large),
-      cmocka_unit_test(test_transforms),    cmocka_unit_test(test_identifier),
-      cmocka_unit_test(test_fields),        cmocka_unit_test(test_memory_limit),
-      cmocka_unit_test(test_reading_limit), cmocka_unit_test(test_plan),
-      cmocka_unit_test(test_cancel),        cmocka_unit_test(test_full_disk),
-      cmocka_unit_test(test_damage),
+      cmocka_unit_test(test_round_trips),  cmocka_unit_test(test_large),
+      cmocka_unit_test(test_transforms),   cmocka_unit_test(test_identifier),
+      cmocka_unit_test(test_fields),       cmocka_unit_test(test_signs_of_zero),
+      cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_reading_limit),
+      cmocka_unit_test(test_plan),         cmocka_unit_test(test_cancel),
+      cmocka_unit_test(test_full_disk),    cmocka_unit_test(test_damage),
   };
   const vxm_vdb_functions *functions;
   vxm_error error = VXM_ERROR_INIT;

@@ -87,6 +87,7 @@ static void assert_field_comes_back(vxm_context *context, const vxm_field *field
   assert_int_equal(back->scalar, field->scalar);
   assert_int_equal(back->channels, field->channels);
   assert_int_equal(back->about.kind, field->about.kind);
+  assert_true(back->about.is_declared == (field->about.kind != VXM_FIELD_NUMBERS));
   assert_memory_equal(&back->space, &field->space, sizeof field->space);
   assert_memory_equal(back->values, field->values, vxm_field_count(field) * vxm_field_voxel_bytes(field));
   assert_int_equal(back->about.table.count, field->about.table.count);

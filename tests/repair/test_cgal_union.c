@@ -324,6 +324,93 @@ static void cavities(void **state) {
   assert_true(check_union(soup, 8, 0, NULL) == expected);
 }
 
+/** Cavities of which one face lies in the skin, and what stands in them or lies free. */
+static void pockets(void **state) {
+  (void)state;
+  vxm_rng rng = {11};
+  for (int round = 0; round < 12; round++) {
+    frame3 frame = round ? random_frame(&rng) : upright;
+    for (int i = 0; i < 3 && round % 2; i++)
+      frame.move[i] = 200 * vxm_rng_unit(&rng);
+    static const struct {
+      double low[3], high[3], adds;
+    } in_pocket[] = {
+        {{2, 2, 2}, {4, 4, 4}, 8},  /* free */
+        {{5, 3, 5}, {6, 5, 6}, 2},  /* the same */
+        {{5, 1, 1}, {6, 2, 3}, 2},  /* at a wall */
+        {{2, 4, 5}, {3, 6, 6}, 2},  /* on the ground */
+        {{2, 0, 5}, {3, 1, 6}, 1},  /* flush with the opening */
+        {{1, -1, 3}, {2, 2, 4}, 3}, /* out of it */
+    };
+    for (unsigned some = 0; some < 64; some += round % 3 ? 9 : 1) {
+      vxm_soup *soup = new_soup(context);
+      double volume = 512 - 6 * 6 * 6;
+      add_box(soup, (double[]){0, 0, 0}, (double[]){8, 8, 8}, &frame, true, false);
+      for (int i = 0; i < 6; i++)
+        if (some >> i & 1) {
+          volume += in_pocket[i].adds;
+          add_box(soup, in_pocket[i].low, in_pocket[i].high, &frame, true, false);
+        }
+      add_box(soup, (double[]){1, 0, 1}, (double[]){7, 6, 7}, &frame, true, true);
+      vxm_union_report report;
+      vxm_soup *out = unite(soup, NULL, &report);
+      assert_int_equal(report.failed, 0);
+      assert_int_equal(count_meetings(out), 0);
+      if (fabs(volume_of(out) - volume) > 1e-6 * volume)
+        fail_msg("round %d, %u: %g instead of %g", round, some, volume_of(out), volume);
+      vxm_soup_destroy(out);
+      vxm_soup_destroy(soup);
+    }
+  }
+}
+
+/** Cavities of several solids together, of none, and of one that is nearly as large. */
+static void pockets_of_several(void **state) {
+  (void)state;
+  for (int order = 0; order < 2; order++)
+    for (int inside = 0; inside < 3; inside++) {
+      /* two halves of a block, and a cavity across */
+      vxm_soup *soup = new_soup(context);
+      if (order)
+        add_hollow(soup, 2, 0, 2, 6, 6, 6);
+      add_cuboid(soup, 0, 0, 0, 4, 8, 8);
+      add_cuboid(soup, 4, 0, 0, 8, 8, 8);
+      if (inside == 1)
+        add_cuboid(soup, 2.5, 1, 3, 3.5, 2, 4);
+      if (inside == 2)
+        add_cuboid(soup, 3, 4, 3, 5, 6, 4);
+      if (!order)
+        add_hollow(soup, 2, 0, 2, 6, 6, 6);
+      vxm_union_report report;
+      vxm_soup *out = unite(soup, NULL, &report);
+      assert_united(out);
+      assert_int_equal(report.failed, 0);
+      double adds[] = {0, 1, 4};
+      assert_true(fabs(volume_of(out) - (512 - 96 + adds[inside])) < 1e-9);
+      vxm_soup_destroy(out);
+      vxm_soup_destroy(soup);
+    }
+  /* what the pocket of one has in it belongs to another one */
+  vxm_soup *soup = new_soup(context);
+  add_cuboid(soup, 0, 0, 0, 8, 8, 8);
+  add_hollow(soup, 1, 0, 1, 7, 6, 7);
+  add_cuboid(soup, 3, -4, 3, 5, 4, 5);
+  assert_true(fabs(check_union(soup, 3, 2, NULL) - (512 - 216 + 32)) < 1e-9);
+  /* a cutter that reaches out takes from all that it cuts through, and nothing of what lies in it */
+  soup = new_soup(context);
+  add_cuboid(soup, 0, 0, 0, 8, 8, 8);
+  add_hollow(soup, 1, -1, 1, 7, 6, 7);
+  add_cuboid(soup, 2, 4, 2, 4, 6, 4);
+  add_cuboid(soup, 2, 1, 2, 3, 2, 3);
+  add_cuboid(soup, 2, -1, 5, 3, 1, 6);
+  vxm_union_report report;
+  vxm_soup *out = unite(soup, NULL, &report);
+  assert_united(out);
+  assert_true(fabs(volume_of(out) - (512 - 216 + 8 + 1 + 2)) < 1e-9);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+}
+
 static void drilled(void **state) {
   (void)state;
   vxm_soup *soup = new_soup(context);
@@ -647,6 +734,8 @@ int main(void) {
       cmocka_unit_test(what_is_not_closed),
       cmocka_unit_test(nested),
       cmocka_unit_test(cavities),
+      cmocka_unit_test(pockets),
+      cmocka_unit_test(pockets_of_several),
       cmocka_unit_test(drilled),
       cmocka_unit_test(a_lone_cavity),
       cmocka_unit_test(boxes_in_any_direction),

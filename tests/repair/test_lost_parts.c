@@ -139,10 +139,35 @@ static void what_unions_lose(void **state) {
   vxm_soup_destroy(before);
 }
 
+/** Bodies that lie in a cavity may not go with what it takes away. */
+static void what_lies_in_cavities(void **state) {
+  (void)state;
+  vxm_soup *before = new_soup(context), *after = new_soup(context), *all = new_soup(context);
+  add_cuboid(before, 2, 2, 2, 4, 4, 4);
+  add_cuboid(before, 5, 3, 5, 6, 5, 6);
+  size_t faces = before->face_count;
+  add_cuboid(before, 1, 0, 1, 7, 6, 7);
+  turn_faces(before, faces);
+  add_cuboid(before, 0, 0, 0, 8, 8, 8);
+  add_cuboid(after, 0, 0, 0, 1, 8, 8);
+  add_cuboid(after, 7, 0, 0, 8, 8, 8);
+  add_cuboid(after, 1, 0, 0, 7, 8, 1);
+  add_cuboid(after, 1, 0, 7, 7, 8, 8);
+  add_cuboid(after, 1, 6, 1, 7, 8, 7);
+  assert_int_equal(count_emptied(before, after), 2);
+  add_cuboid(after, 2, 2, 2, 4, 4, 4);
+  assert_int_equal(count_emptied(before, after), 1);
+  add_cuboid(all, 0, 0, 0, 8, 8, 8);
+  assert_int_equal(count_emptied(before, all), 0);
+  vxm_soup_destroy(all);
+  vxm_soup_destroy(after);
+  vxm_soup_destroy(before);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(missing_bodies_are_found), cmocka_unit_test(mended_bodies_are_not),
-      cmocka_unit_test(halves_and_what_is_open), cmocka_unit_test(stacks_are_asked_by_few_lines),
-      cmocka_unit_test(what_unions_lose)};
+      cmocka_unit_test(halves_and_what_is_open),  cmocka_unit_test(stacks_are_asked_by_few_lines),
+      cmocka_unit_test(what_unions_lose),         cmocka_unit_test(what_lies_in_cavities)};
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

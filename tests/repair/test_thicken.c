@@ -61,6 +61,36 @@ static void test_square(void **state) {
   }
 }
 
+/** Plates are as thick as they are to be, whatever that is, wherever they lie, and turned. */
+static void test_thickness(void **state) {
+  (void)state;
+  vxm_rng rng = {7};
+  static const double far_off[] = {0, 1, 10, 1000, 1e5};
+  for (int turned = 0; turned < 3; turned++)
+    for (int f = 0; f < 5; f++) {
+      frame3 frame = turned ? random_frame(&rng) : upright;
+      vxm_soup *soup = new_soup(context);
+      add_wall(soup, (double[]){0, 0, 0}, (double[]){1, 0, 0}, (double[]){0, 1, 0}, 2);
+      add_wall(soup, (double[]){3, 0, 0}, (double[]){1, 0, 0}, (double[]){0, 0.7, 0}, 1);
+      double *p = soup->positions;
+      for (size_t v = 0; v < soup->vertex_count; v++, p += 3) {
+        const double q[3] = {p[0], p[1], p[2]};
+        for (int i = 0; i < 3; i++)
+          p[i] =
+              frame.m[i][0] * q[0] + frame.m[i][1] * q[1] + frame.m[i][2] * q[2] + (1 - 0.3 * i) * far_off[f];
+      }
+      vxm_soup *plates = plates_of(soup, 0.1);
+      assert_closed_manifold(plates);
+      for (size_t v = plates->vertex_count; v-- > 0;) /* for the sum's sake */
+        for (size_t i = 0; i < 3; i++)
+          plates->positions[3 * v + i] -= plates->positions[i];
+      if (fabs(volume_of(plates) - 0.17) > 1e-9 + 1e-15 * far_off[f])
+        fail_msg("turned %d, %g off: %.12g", turned, far_off[f], volume_of(plates));
+      vxm_soup_destroy(plates);
+      vxm_soup_destroy(soup);
+    }
+}
+
 /** Walls that meet at an edge, from all four sides or fewer: corners are mitred, and nothing is there twice.
  */
 static void test_junctions(void **state) {
@@ -298,9 +328,9 @@ static void test_too_thick(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_square), cmocka_unit_test(test_junctions),
-                                     cmocka_unit_test(test_flaps),  cmocka_unit_test(test_twisted),
-                                     cmocka_unit_test(test_random), cmocka_unit_test(test_repair),
-                                     cmocka_unit_test(test_coarse), cmocka_unit_test(test_too_thick)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_square), cmocka_unit_test(test_thickness), cmocka_unit_test(test_junctions),
+      cmocka_unit_test(test_flaps),  cmocka_unit_test(test_twisted),   cmocka_unit_test(test_random),
+      cmocka_unit_test(test_repair), cmocka_unit_test(test_coarse),    cmocka_unit_test(test_too_thick)};
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

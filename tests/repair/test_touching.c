@@ -340,12 +340,49 @@ static void overlapping_blocks(void **state) {
   assert_true(checked >= ROUNDS(60) * 9 / 10);
 }
 
+/** Bodies, or voids in a block, that share whole faces: however often each was drawn, they are what they are
+ * once.
+ */
+static void drawn_several_times(void **state) {
+  (void)state;
+  vxm_rng rng = {73};
+  for (int round = 0; round < 60; round++) {
+    int cells[3][3], count = 2 + round / 2 % 2, order[9], drawn = 0;
+    bool voids = round % 2;
+    for (int a = 0; a < 3; a++)
+      cells[0][a] = 2 + (int)vxm_rng_below(&rng, 3);
+    for (int c = 1; c < count; c++) { /* beside the first one, at sides of it that differ */
+      memcpy(cells[c], cells[0], sizeof *cells);
+      cells[c][(round + c) % 3] += vxm_rng_below(&rng, 2) ? 1 : -1;
+    }
+    for (int c = 0; c < count; c++)
+      for (int copies = 1 + (int)vxm_rng_below(&rng, count == 2 ? 3 : 2); copies > 0; copies--)
+        order[drawn++] = c;
+    for (int i = drawn - 1; i > 0; i--) {
+      int other = (int)vxm_rng_below(&rng, (uint64_t)i + 1), kept = order[i];
+      order[i] = order[other];
+      order[other] = kept;
+    }
+    vxm_soup *soup = new_soup(context);
+    if (voids)
+      add_cuboid(soup, 0, 0, 0, 8, 8, 8);
+    for (int i = 0; i < drawn; i++) {
+      const int *c = cells[order[i]];
+      (voids ? add_hollow : add_cuboid)(soup, c[0], c[1], c[2], c[0] + 1, c[1] + 1, c[2] + 1);
+    }
+    vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+    vxm_soup *clean = repaired(soup, &options, NULL);
+    assert_true(fabs(volume_of(clean) - (voids ? 512 - count : count)) < 1e-9);
+    vxm_soup_destroy(clean);
+    vxm_soup_destroy(soup);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cavities_that_touch),
-      cmocka_unit_test(a_cavity_with_the_box_of_its_body),
-      cmocka_unit_test(blocks_of_cells),
-      cmocka_unit_test(overlapping_blocks),
+      cmocka_unit_test(cavities_that_touch), cmocka_unit_test(a_cavity_with_the_box_of_its_body),
+      cmocka_unit_test(blocks_of_cells),     cmocka_unit_test(overlapping_blocks),
+      cmocka_unit_test(drawn_several_times),
   };
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

@@ -205,7 +205,7 @@ static void read_labels(vxm_about *about, vxm_context *context, const json_t *ro
 static void read_about(vxm_about *about, vxm_context *context, const json_t *root) {
   const char *kind = json_string_value(json_object_get(root, "values")), *key;
   const json_t *metadata = json_object_get(root, "metadata");
-  about->is_declared = kind && vxm_field_kind_find(&about->kind, kind);
+  vxm_about_name(about, kind);
   read_labels(about, context, root);
   for (void *at = json_object_iter((json_t *)metadata); at;
        at = json_object_iter_next((json_t *)metadata, at)) {

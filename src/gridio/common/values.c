@@ -67,6 +67,13 @@ vxm_status vxm_fail_numbers(vxm_error *error, const char *file, const char *what
 
 /* ---- What a file says ---- */
 
+void vxm_about_name(vxm_about *about, const char *name) {
+  vxm_field_kind kind = VXM_FIELD_NUMBERS;
+  about->is_declared = name && vxm_field_kind_find(&kind, name) && kind != VXM_FIELD_NUMBERS;
+  if (about->is_declared)
+    about->kind = kind;
+}
+
 void vxm_about_destroy(vxm_about *about) {
   vxm_label_table_destroy(&about->table);
   vxm_metadata_destroy(&about->pairs);

@@ -77,6 +77,8 @@ vxm_scalar vxm_scalar_of(char kind, size_t size);
 /** By the name that vxm_scalar_name or vxm_field_kind_name gives; false if there is none. */
 bool vxm_scalar_find(vxm_scalar *out, const char *name);
 bool vxm_field_kind_find(vxm_field_kind *out, const char *name);
+/** Takes what a file calls its values, which may be NULL; a name that is none, or "numbers", says nothing. */
+void vxm_about_name(vxm_about *about, const char *name);
 
 void vxm_about_destroy(vxm_about *about);
 /** Whether values of which this is said may be bits by a rule. Distances and confidences mean something else

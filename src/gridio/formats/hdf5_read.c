@@ -57,7 +57,7 @@ static vxm_status take_text(void *payload, const char *key, size_t key_size, con
   (void)error;
   memcpy(word, value, value_size < sizeof word ? value_size : sizeof word - 1);
   if (equals(key, key_size, "kind"))
-    r->about.is_declared = vxm_field_kind_find(&r->about.kind, word);
+    vxm_about_name(&r->about, word);
   else if (equals(key, key_size, "axes"))
     r->has_odd_axes = !vxm_axes_parse(r->axis, value, value_size);
   else if (key_size > strlen(VXM_HDF5_LABEL) && memcmp(key, VXM_HDF5_LABEL, strlen(VXM_HDF5_LABEL)) == 0)

@@ -254,7 +254,7 @@ static void read_about(const reading *r) {
   memcpy(name, r->data + r->at->intent_name, 16);
   if (code_at(r, r->at->intent) == INTENT_LABEL)
     *about = (vxm_about){.is_declared = true, .kind = VXM_FIELD_LABELS};
-  else if (vxm_field_kind_find(&kind, name))
+  else if (vxm_field_kind_find(&kind, name) && kind != VXM_FIELD_NUMBERS)
     *about = (vxm_about){.is_declared = true, .kind = kind};
   if (r->header->raster.channels == 4)
     *about = (vxm_about){.is_declared = true, .kind = VXM_FIELD_COLORS};

@@ -273,7 +273,7 @@ static vxm_status read_pair(fields *f, text name, text value) {
   else if (equals(name, VXM_NRRD_VALUES_KEY) && length < sizeof kind) {
     memcpy(kind, value.at, length);
     kind[length] = '\0';
-    about->is_declared = vxm_field_kind_find(&about->kind, kind);
+    vxm_about_name(about, kind);
   } else
     vxm_metadata_add(&about->pairs, f->input->context, (const char *)name.at, (size_t)(name.end - name.at),
                      (const char *)value.at, length);

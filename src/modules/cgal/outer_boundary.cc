@@ -36,10 +36,13 @@ public:
       throw std::length_error("more pieces than can be numbered");
   }
 
-  Skin run(const Inside &inside) {
+  Skin run(Material *material) {
     find_sides();
     find_patches();
-    classify(inside);
+    cast();
+    if (material->measures())
+      measure(material);
+    classify(*material);
     return build();
   }
 
@@ -170,38 +173,70 @@ private:
     throw std::logic_error("a piece without area");
   }
 
-  void classify(const Inside &inside) {
-    std::vector<ExactRay> rays;
+  /** Sends a ray from each patch. */
+  void cast() {
     for (uint32_t piece : representative_) {
       const Corners &corner = sheet_.corners[piece];
       const ExactPoints &points = pieces_.points;
-      rays.push_back(
+      rays_.push_back(
           {CGAL::centroid(points[corner[0]], points[corner[1]], points[corner[2]]), best_axis(piece)});
     }
-    using Hit = std::pair<uint32_t, int>;
-    std::vector<std::vector<Hit>> hits(rays.size());
+    hits_.resize(rays_.size());
     const Sheet &whole = surface_.sheet;
-    cast_rays(surface_.points, whole.corners, rays, meter_, [&](size_t ray, uint32_t t, int sign) {
+    cast_rays(surface_.points, whole.corners, rays_, meter_, [&](size_t ray, uint32_t t, int sign) {
       for (size_t c = whole.begin[t]; c < whole.begin[t + 1]; c++)
-        hits[ray].emplace_back(whole.covers[c].part, sign * whole.covers[c].sign);
+        hits_[ray].emplace_back(whole.covers[c].part, sign * whole.covers[c].sign);
     });
-    std::vector<int> windings(part_count_);
-    std::vector<int> side(rays.size());
-    for (size_t r = 0; r < rays.size(); r++) {
+  }
+
+  /** Tells of both sides of each patch how often parts wind around what is there: in front of its first piece
+   * and behind that. */
+  template <typename Take> void look_at_sides(Take take) const {
+    std::vector<int> beyond(part_count_), before;
+    for (size_t r = 0; r < rays_.size(); r++) {
       uint32_t piece = representative_[r];
-      int facing_ray = facing(piece, rays[r].axis);
-      std::fill(windings.begin(), windings.end(), 0);
-      for (const Hit &hit : hits[r])
-        windings[hit.first] += hit.second;
-      bool beyond = inside(windings);
+      int facing_ray = facing(piece, rays_[r].axis);
+      std::fill(beyond.begin(), beyond.end(), 0);
+      for (const auto &hit : hits_[r])
+        beyond[hit.first] += hit.second;
+      before = beyond;
       for (size_t c = sheet_.begin[piece]; c < sheet_.begin[piece + 1]; c++)
-        windings[sheet_.covers[c].part] += facing_ray * sheet_.covers[c].sign;
-      bool before = inside(windings);
-      bool front = facing_ray > 0 ? beyond : before, back = facing_ray > 0 ? before : beyond;
-      side[r] = front == back ? 0 : back ? 1 : -1;
-      if (turned_[piece])
-        side[r] = -side[r];
+        before[sheet_.covers[c].part] += facing_ray * sheet_.covers[c].sign;
+      bool front_beyond = (facing_ray > 0) != turned_[piece];
+      take(r, front_beyond ? beyond : before, front_beyond ? before : beyond);
     }
+  }
+
+  /** Of the cone from a point to a piece, seen as the first piece of its patch is. */
+  double cone(uint32_t piece, const Position &tip) const {
+    const Corners &corner = sheet_.corners[piece];
+    const Position &at = pieces_.points.rounded(corner[0]);
+    Position n = normal(piece);
+    double out = 0;
+    for (size_t k = 0; k < 3; k++)
+      out += n[k] * (at[k] - tip[k]);
+    return (turned_[piece] ? -out : out) / 6;
+  }
+
+  /** The volume of a place is that of the cones to all that bounds it. */
+  void measure(Material *material) const {
+    std::vector<double> volume(representative_.size(), 0);
+    for (uint32_t piece = 0; piece < sheet_.size(); piece++)
+      volume[patch_[piece]] += cone(piece, pieces_.points.rounded(sheet_.corners[0][0]));
+    material->begin_measure();
+    look_at_sides([&](size_t patch, const std::vector<int> &front, const std::vector<int> &back) {
+      material->measure(front, -volume[patch]);
+      material->measure(back, volume[patch]);
+    });
+    material->end_measure();
+  }
+
+  void classify(const Material &material) {
+    std::vector<int8_t> side(representative_.size());
+    look_at_sides([&](size_t patch, const std::vector<int> &front, const std::vector<int> &back) {
+      bool in_front = material.inside(front), behind = material.inside(back);
+      side[patch] = (int8_t)(in_front == behind ? 0 : behind ? 1 : -1);
+    });
     for (uint32_t piece = 0; piece < sheet_.size(); piece++)
       kept_[piece] = (int8_t)(turned_[piece] ? -side[patch_[piece]] : side[patch_[piece]]);
   }
@@ -332,17 +367,19 @@ private:
   std::vector<Side> sides_;   /**< in the order of their edges */
   std::vector<size_t> place_; /**< of side k of a piece in sides_ */
   std::vector<uint32_t> patch_, representative_;
-  std::vector<bool> turned_; /**< against the first piece of its patch */
-  std::vector<int8_t> kept_; /**< 0: no, 1: as it is, -1: turned */
+  std::vector<bool> turned_;                                /**< against the first piece of its patch */
+  std::vector<ExactRay> rays_;                              /**< per patch, from its representative */
+  std::vector<std::vector<std::pair<uint32_t, int>>> hits_; /**< per ray: parts, and how it leaves them */
+  std::vector<int8_t> kept_;                                /**< 0: no, 1: as it is, -1: turned */
   std::vector<uint32_t> leader_;
 };
 
 } // namespace
 
-Skin find_skin(const Surface &surface, const Meetings &meetings, size_t part_count, const Inside &inside,
+Skin find_skin(const Surface &surface, const Meetings &meetings, size_t part_count, Material *material,
                Meter &meter) {
   Pieces pieces = arrange(surface, meetings, meter);
-  return Selection(surface, pieces, part_count, meter).run(inside);
+  return Selection(surface, pieces, part_count, meter).run(material);
 }
 
 } // namespace vxm

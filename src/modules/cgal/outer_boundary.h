@@ -7,8 +7,26 @@
 
 namespace vxm {
 
-/** Whether there is material at a place, from how often each part winds around it. */
-using Inside = std::function<bool(const std::vector<int> &windings)>;
+/** Where there is material, told from how often each part winds around a place. */
+class Material {
+public:
+  virtual ~Material() = default;
+  virtual bool inside(const std::vector<int> &windings) const = 0;
+
+  /** Whether the volumes of places are to be told before it is asked what is inside. */
+  virtual bool measures() const {
+    return false;
+  }
+  virtual void begin_measure() {
+  }
+  /** Adds a share, which may be negative, to the volume of the places that parts wind around like this. */
+  virtual void measure(const std::vector<int> &windings, double volume) {
+    (void)windings;
+    (void)volume;
+  }
+  virtual void end_measure() {
+  }
+};
 
 /** A closed surface, each of whose edges has two triangles, which run along it in opposite directions. */
 struct Skin {
@@ -26,7 +44,7 @@ struct Skin {
  *
  * @param part_count parts are numbered 0 to part_count - 1
  */
-Skin find_skin(const Surface &surface, const Meetings &meetings, size_t part_count, const Inside &inside,
+Skin find_skin(const Surface &surface, const Meetings &meetings, size_t part_count, Material *material,
                Meter &meter);
 
 } // namespace vxm

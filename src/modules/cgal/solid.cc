@@ -101,17 +101,30 @@ Meetings meetings_of(const Surface &surface, Meter &meter) {
   return out;
 }
 
+/** A surface that is that of material, which winds around all so often without it. */
+class OnePart : public Material {
+public:
+  explicit OnePart(int everywhere) : everywhere_(everywhere) {
+  }
+  bool inside(const std::vector<int> &windings) const override {
+    return windings[0] + everywhere_ > 0;
+  }
+
+private:
+  int everywhere_;
+};
+
 /** One attempt; true if the outcome is good in doubles. */
 bool bound_in_doubles(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
-                      size_t part_count, const Inside &inside, Meter &meter, Skin *out) {
+                      size_t part_count, Material *material, Meter &meter, Skin *out) {
   Collector input;
   for (const PartTriangle &t : triangles)
     input.add(points, t.corners, Cover{t.part, 1, t.face});
   Surface surface = input.take();
   Meetings meetings = meetings_of(surface, meter);
-  *out = find_skin(surface, meetings, part_count, inside, meter);
+  *out = find_skin(surface, meetings, part_count, material, meter);
   /* Far away from all parts there may be material too, around cavities. */
-  int everywhere = inside(std::vector<int>(part_count)) ? 1 : 0;
+  OnePart rest(material->inside(std::vector<int>(part_count)) ? 1 : 0);
   size_t last = SIZE_MAX;
   for (int round = 0;; round++) {
     Collector rounded;
@@ -126,9 +139,7 @@ bool bound_in_doubles(const std::vector<Position> &points, const std::vector<Par
       return false;
     last = bad;
     /* The surface is that of the material now, a part by itself. */
-    Skin next = find_skin(
-        surface, meetings, 1, [=](const std::vector<int> &winding) { return winding[0] + everywhere > 0; },
-        meter);
+    Skin next = find_skin(surface, meetings, 1, &rest, meter);
     next.altered = out->altered;
     *out = std::move(next);
   }
@@ -137,9 +148,9 @@ bool bound_in_doubles(const std::vector<Position> &points, const std::vector<Par
 } // namespace
 
 bool bound_solid(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
-                 size_t part_count, const Inside &inside, Meter &meter, Skin *out) {
+                 size_t part_count, Material *material, Meter &meter, Skin *out) {
   for (int bits : LATTICES)
-    if (bound_in_doubles(on_lattice(points, bits), triangles, part_count, inside, meter, out))
+    if (bound_in_doubles(on_lattice(points, bits), triangles, part_count, material, meter, out))
       return true;
   return false;
 }

@@ -22,7 +22,7 @@ struct PartTriangle {
  * @return false if that could not be had
  */
 bool bound_solid(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
-                 size_t part_count, const Inside &inside, Meter &meter, Skin *out);
+                 size_t part_count, Material *material, Meter &meter, Skin *out);
 
 } // namespace vxm
 

@@ -5,8 +5,10 @@
 #include <exception>
 #include <memory>
 #include <numeric>
+#include <set>
 
 #include "modules/cgal/exception_barrier.h"
+#include "modules/cgal/group_material.h"
 #include "modules/cgal/parts.h"
 #include "modules/cgal/result.h"
 #include "modules/cgal/solid.h"
@@ -28,8 +30,8 @@ class Union {
 public:
   Union(const vxm_soup *soup, const Triangles &triangles, const Parts &parts, Meter &meter)
       : soup_(soup), triangles_(triangles), parts_(parts), meter_(meter), result_(soup, meter),
-        triangles_of_group_(parts.groups.size()), fates_(parts.groups.size(), Fate::kept),
-        altered_(parts.parts.size()) {
+        triangles_of_group_(parts.groups.size()), skins_(parts.groups.size()),
+        fates_(parts.groups.size(), Fate::kept), altered_(parts.parts.size()) {
     for (uint32_t t = 0; t < triangles.corners.size(); t++)
       triangles_of_group_[group_of(triangles.face[t])].push_back(t);
   }
@@ -37,7 +39,7 @@ public:
   void run() {
     meter_.phase("uniting parts");
     size_t done = 0;
-    for (uint32_t g = 0; g < parts_.groups.size(); g++) {
+    for (uint32_t g : from_outside()) {
       meter_.progress((double)done / (double)(triangles_.corners.size() + 1));
       done += triangles_of_group_[g].size();
       fates_[g] = settle(g);
@@ -45,6 +47,11 @@ public:
         for (uint32_t part : parts_.groups[g].parts)
           altered_[part] = true;
     }
+    for (uint32_t g = 0; g < parts_.groups.size(); g++)
+      if (fates_[g] == Fate::rebuilt) {
+        add(skins_[g]);
+        skins_[g] = Skin();
+      }
   }
 
   /** Whether a part's surface is not all in the result, or in one with that of another part. */
@@ -72,6 +79,22 @@ private:
     return parts_.parts[parts_.of_face[face]].group;
   }
 
+  /** Groups, those that others lie in before these: what is taken from them must be known. */
+  std::vector<uint32_t> from_outside() const {
+    std::vector<uint32_t> out(parts_.groups.size());
+    std::iota(out.begin(), out.end(), 0U);
+    std::stable_sort(out.begin(), out.end(), [this](uint32_t a, uint32_t b) {
+      return parts_.groups[a].around.size() < parts_.groups[b].around.size();
+    });
+    return out;
+  }
+
+  bool is_cavity_of(uint32_t cavity, uint32_t solid) const {
+    return parts_.host[cavity] == solid || carved_.count({cavity, solid}) != 0 ||
+           (parts_.host[cavity] == NO_PART && failed(cavity) &&
+            parts_.parts[cavity].group == parts_.parts[solid].group);
+  }
+
   /** The outward parts of other groups that have a group in their material. */
   std::vector<uint32_t> bodies_around(const Group &group) const {
     std::vector<uint32_t> out;
@@ -80,7 +103,7 @@ private:
         continue;
       bool in_cavity = false;
       for (uint32_t cavity : group.around)
-        in_cavity = in_cavity || parts_.host[cavity] == solid;
+        in_cavity = in_cavity || is_cavity_of(cavity, solid);
       if (!in_cavity)
         out.push_back(solid);
     }
@@ -106,27 +129,6 @@ private:
     return rebuild(g, bodies.empty() ? NO_PART : bodies[0]);
   }
 
-  /** Whether there is material, by the rules of repair/external/cgal.h; `body` is around the group, or
-   * NO_PART. */
-  Inside material(const std::vector<uint32_t> &group, uint32_t body) const {
-    return [this, &group, body](const std::vector<int> &windings) {
-      auto in_cavity_of = [&](uint32_t host) {
-        for (size_t i = 0; i < group.size(); i++)
-          if (parts_.parts[group[i]].sign < 0 && windings[i] < 0 && parts_.host[group[i]] == host)
-            return true;
-        return false;
-      };
-      if (in_cavity_of(NO_PART))
-        return false;
-      if (body != NO_PART && !in_cavity_of(body))
-        return true;
-      for (size_t i = 0; i < group.size(); i++)
-        if (parts_.parts[group[i]].sign > 0 && windings[i] > 0 && !in_cavity_of(group[i]))
-          return true;
-      return false;
-    };
-  }
-
   Fate rebuild(uint32_t g, uint32_t body) {
     const std::vector<uint32_t> &group = parts_.groups[g].parts;
     std::vector<PartTriangle> triangles;
@@ -135,9 +137,10 @@ private:
       auto at = std::lower_bound(group.begin(), group.end(), parts_.of_face[face]);
       triangles.push_back({triangles_.corners[t], (uint32_t)(at - group.begin()), face});
     }
-    Skin skin;
+    Skin &skin = skins_[g];
+    GroupMaterial material(parts_, group, body);
     try {
-      if (!bound_solid(triangles_.points, triangles, group.size(), material(group, body), meter_, &skin))
+      if (!bound_solid(triangles_.points, triangles, group.size(), &material, meter_, &skin))
         return Fate::failed;
     } catch (const std::bad_alloc &) {
       throw; /* also to stop */
@@ -146,7 +149,7 @@ private:
     }
     for (size_t i = 0; i < group.size(); i++)
       altered_[group[i]] = skin.altered[i];
-    add(skin);
+    material.carved([this](uint32_t cavity, uint32_t solid) { carved_.emplace(cavity, solid); });
     return Fate::rebuilt;
   }
 
@@ -166,7 +169,9 @@ private:
   Meter &meter_;
   Result result_;
   std::vector<std::vector<uint32_t>> triangles_of_group_;
+  std::vector<Skin> skins_; /**< per group: of one that was rebuilt */
   std::vector<Fate> fates_;
+  std::set<std::pair<uint32_t, uint32_t>> carved_; /**< cavities without a host, and solids they take from */
   std::vector<bool> altered_;
 };
 

@@ -126,9 +126,11 @@ void put_bits(vxm_vdb &vdb, const int64_t at[3], const uint64_t bits[8], vxm_err
   tree.root().addLeaf(leaf.release());
 }
 
+/** -0 is another number than 0, and would become 0 where it is not active. */
 bool is_active(const vxm_vdb &vdb, float number) {
   float background = vdb.kind.background;
-  return number != background && !(vdb.kind.content == VXM_VDB_LEVEL_SET && number == -background);
+  return std::memcmp(&number, &background, sizeof number) != 0 &&
+         !(vdb.kind.content == VXM_VDB_LEVEL_SET && number == -background);
 }
 
 void put_numbers(vxm_vdb &vdb, const int64_t at[3], const float numbers[VXM_VDB_VOXELS], vxm_error *error) {

@@ -10,6 +10,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cstring>
 #include <istream>
 #include <streambuf>
 #include <string>
@@ -325,7 +326,8 @@ struct place {
 template <typename Tree, typename Tile>
 void send_tile(const reading &r, const Tree &tree, const Tile &tile, int64_t side) {
   if constexpr (std::is_same_v<Tree, openvdb::FloatTree>) {
-    if (*tile != tree.background())
+    float number = *tile, background = tree.background();
+    if (std::memcmp(&number, &background, sizeof number) != 0) /* -0 is another one than 0 */
       r.sink->cube(r.sink->payload, place(tile.getCoord()).at, side, *tile);
   } else if (tile.isValueOn() && (std::is_same_v<Tree, openvdb::MaskTree> || *tile))
     r.sink->cube(r.sink->payload, place(tile.getCoord()).at, side, 1);

@@ -3,7 +3,7 @@
 
 #include "mesh/geometry.h"
 #include "repair/clean/outer_sides.h"
-#include "repair/state/edge_groups.h"
+#include "repair/clean/repeats.h"
 #include "repair/state/face_set_sides.h"
 
 #include <string.h>
@@ -11,170 +11,34 @@
 /** Of the area of the rest of a group: fins that have no more are removed. */
 static const double FIN_PART = 0.1;
 
-enum { PEELS_MAX = 16 };
-
-/** What is to be decided about a kind: all faces with the same corners. */
-typedef enum kind {
-  PLAIN = 0, /**< nothing */
-  SHEET, /**< as many of one orientation as of the other, or, where the group is not balanced, an even number
-            in both */
-  SAME_WAY /**< several more of one orientation than of the other; where the group is not balanced, an even
-              number, all of one orientation */
-} kind;
-
-/** A set of kinds of faces that edges connect, all of them sheets or all of copies that run the same way;
- * stored at the face that stands for the set. */
-typedef struct fin {
-  bool touches;    /**< along an edge there are other faces */
-  bool hangs;      /**< along such an edge an odd number of its kinds end */
-  bool rimmed;     /**< the same along an edge without others */
-  bool ends;       /**< along such an edge one of them ends alone */
-  bool unbalanced; /**< of its kinds, taken once, more sides run along an edge one way than the other */
-  int overlaps;    /**< edges with all other faces on one side of it, less those with some on either side */
-  uint32_t least, most; /**< copies of any of its kinds that stay */
-  size_t largest;       /**< its largest face */
-  double area;          /**< of that */
-} fin;
-
-typedef struct deciding {
-  vxm_repair_state *state;
-  const vxm_soup *soup;
-  const vxm_copies *copies;
-  vxm_edge_groups groups;
-  double scale;
-  uint8_t *kinds;   /**< per face: of the first of its kind */
-  uint32_t *keep;   /**< per first face: how many copies stay of its orientation, and of the other */
-  size_t *parent;   /**< per first face: another one of its fin, or itself */
-  fin *fins;        /**< per face that stands for one */
-  size_t *at_edge;  /**< per edge, twice: 1 + the first sheet at it; the same for the same way */
-  uint32_t *single; /**< per edge, twice: sides of such kinds, each taken once */
-  uint32_t *sides;  /**< per edge, twice: sides of all their faces */
-  int32_t *balance; /**< per edge, twice: of those of `single`, the ones that run forward less the others */
-  double *fin_area, *rest_area; /**< per group: of the rimmed sheets, taken once, and of plain faces */
-  uint8_t *tangled; /**< per group: without its fins, too, it has edges with more than two sides */
-} deciding;
-
-static bool is_first(const deciding *d, size_t face) {
-  return d->copies[face].first == face;
-}
-
-static int64_t surplus_of(const vxm_copies *c) {
-  return (int64_t)c->same - (int64_t)c->opposite;
-}
-
 /* ---- Kinds ---- */
 
 /** What stays where nothing speaks against it. */
-static void begin_kind(deciding *d, size_t face) {
+static void begin_kind(vxm_repeats *d, size_t face) {
   const vxm_copies *c = &d->copies[face];
   const vxm_edge_group *group = &d->groups.groups[d->groups.of_face[face]];
-  int64_t surplus = surplus_of(c);
+  int64_t surplus = vxm_repeats_surplus(c);
   d->keep[2 * face] = 1;
   d->keep[2 * face + 1] = 0;
   if (group->balanced && surplus != 0) {
     d->keep[2 * face] = surplus > 0 ? (uint32_t)surplus : 0;
     d->keep[2 * face + 1] = surplus < 0 ? (uint32_t)-surplus : 0;
-    d->kinds[face] = surplus > 1 || surplus < -1 ? SAME_WAY : PLAIN;
+    d->kinds[face] = surplus > 1 || surplus < -1 ? VXM_KIND_SAME_WAY : VXM_KIND_PLAIN;
   } else if (group->balanced)
-    d->kinds[face] = SHEET;
+    d->kinds[face] = VXM_KIND_SHEET;
   else if (group->closed && (c->same + c->opposite) % 2 == 0)
-    d->kinds[face] = c->opposite > 0 ? SHEET : SAME_WAY;
+    d->kinds[face] = c->opposite > 0 ? VXM_KIND_SHEET : VXM_KIND_SAME_WAY;
 }
 
-static uint32_t kept_of(const deciding *d, size_t face) {
-  return d->keep[2 * face] + d->keep[2 * face + 1];
-}
-
-/* ---- Fins ---- */
-
-static void look_at_kind(deciding *d, size_t face) {
-  size_t fin_face = vxm_set_of(d->parent, face), count;
-  fin *f = &d->fins[fin_face];
-  const uint32_t *corner = vxm_face(d->soup, face, &count);
-  double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->scale));
-  if (f->least == 0 || kept_of(d, face) < f->least)
-    f->least = kept_of(d, face);
-  if (kept_of(d, face) > f->most)
-    f->most = kept_of(d, face);
-  if (!(area <= f->area)) {
-    f->area = area;
-    f->largest = face;
-  }
-  for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
-    size_t edge = d->groups.sides[c];
-    if (edge == VXM_NO_EDGE)
-      continue;
-    size_t place = 2 * edge + (d->kinds[face] == SAME_WAY);
-    bool odd = d->single[place] % 2 == 1, others = d->state->edges.edges[edge].count > d->sides[place];
-    f->touches |= others;
-    f->hangs |= odd && others;
-    f->rimmed |= odd && !others;
-    f->ends |= d->single[place] == 1 && !others;
-    f->unbalanced |= d->balance[place] != 0;
-  }
-}
-
-/** Joins kinds to fins, and sees what the edges tell of these. */
-static void find_fins(deciding *d) {
-  memset(d->at_edge, 0, 2 * d->state->edges.count * sizeof *d->at_edge);
-  memset(d->single, 0, 2 * d->state->edges.count * sizeof *d->single);
-  memset(d->sides, 0, 2 * d->state->edges.count * sizeof *d->sides);
-  memset(d->balance, 0, 2 * d->state->edges.count * sizeof *d->balance);
+static void sum_areas(vxm_repeats *d) {
   for (size_t face = 0; face < d->soup->face_count; face++) {
-    d->parent[face] = face;
-    d->fins[face] = (fin){0};
-  }
-  for (size_t face = 0; face < d->soup->face_count; face++) {
-    const vxm_copies *copies = &d->copies[face];
-    bool same_way = d->kinds[face] == SAME_WAY, turned = surplus_of(copies) < 0;
-    for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
-      size_t edge = d->groups.sides[c], place = 2 * edge + same_way;
-      if (d->kinds[face] == PLAIN || edge == VXM_NO_EDGE)
-        continue;
-      d->single[place]++;
-      d->sides[place] += copies->same + copies->opposite;
-      d->balance[place] += (d->soup->indices[c] == d->state->edges.edges[edge].a) != turned ? 1 : -1;
-      if (d->at_edge[place] == 0)
-        d->at_edge[place] = face + 1;
-      else
-        d->parent[vxm_set_of(d->parent, face)] = vxm_set_of(d->parent, d->at_edge[place] - 1);
-    }
-  }
-  for (size_t face = 0; face < d->soup->face_count; face++)
-    if (d->kinds[face] != PLAIN)
-      look_at_kind(d, face);
-}
-
-/**
- * A body that is there several times needs no more than one of them: where the kinds of a fin, each taken
- * once, are balanced, so is what stays without them. What is left of a doubled body that shares faces with
- * another one is found anew. Returns whether there was one.
- */
-static bool peel(deciding *d) {
-  bool any = false;
-  for (size_t face = 0; face < d->soup->face_count; face++) {
-    if (d->kinds[face] != SAME_WAY || !d->groups.groups[d->groups.of_face[face]].balanced)
-      continue;
-    const fin *f = &d->fins[vxm_set_of(d->parent, face)];
-    if (f->unbalanced || f->least < 2)
-      continue;
-    uint32_t *keep = &d->keep[2 * face + (surplus_of(&d->copies[face]) < 0)];
-    *keep -= f->least - 1;
-    if (*keep == 1)
-      d->kinds[face] = PLAIN;
-    any = true;
-  }
-  return any;
-}
-
-static void sum_areas(deciding *d) {
-  for (size_t face = 0; face < d->soup->face_count; face++) {
-    if (!is_first(d, face) || (d->kinds[face] != PLAIN && !d->fins[vxm_set_of(d->parent, face)].rimmed))
+    if (!vxm_repeats_is_first(d, face) ||
+        (d->kinds[face] != VXM_KIND_PLAIN && !d->fins[vxm_set_of(d->parent, face)].rimmed))
       continue;
     size_t count, group = d->groups.of_face[face];
     const uint32_t *corner = vxm_face(d->soup, face, &count);
     double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->scale));
-    if (d->kinds[face] == PLAIN)
+    if (d->kinds[face] == VXM_KIND_PLAIN)
       d->rest_area[group] += area;
     else
       d->fin_area[group] += area;
@@ -185,7 +49,7 @@ static void sum_areas(deciding *d) {
 
 /** On which side of a face another one lies that shares an edge with it: 1 above, -1 below, 0 in its plane.
  */
-static int side_of(const deciding *d, size_t face, size_t other) {
+static int side_of(const vxm_repeats *d, size_t face, size_t other) {
   size_t count;
   const uint32_t *corner = vxm_face(d->soup, face, &count);
   vxm_vec3 normal = vxm_polygon_area(d->soup->positions, corner, count, d->scale), sum = {0, 0, 0};
@@ -200,12 +64,12 @@ static int side_of(const deciding *d, size_t face, size_t other) {
 }
 
 /** Sees where two plain faces hang on a fin of the same way; `tally` is scratch per edge, twice. */
-static void look_at_sides(deciding *d, int8_t *tally) {
+static void look_at_sides(vxm_repeats *d, int8_t *tally) {
   for (size_t face = 0; face < d->soup->face_count; face++)
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
       size_t e = d->groups.sides[c];
       if (e == VXM_NO_EDGE || d->at_edge[2 * e + 1] == 0 || d->state->edges.edges[e].count != 4 ||
-          d->kinds[d->copies[face].first] != PLAIN)
+          d->kinds[d->copies[face].first] != VXM_KIND_PLAIN)
         continue;
       int side = side_of(d, d->at_edge[2 * e + 1] - 1, face);
       tally[2 * e] = (int8_t)(tally[2 * e] + side);
@@ -219,36 +83,36 @@ static void look_at_sides(deciding *d, int8_t *tally) {
 /* ---- What lies within the solid ---- */
 
 /** Whether a face stays as far as has been decided. */
-static bool stays(const deciding *d, size_t face) {
+static bool stays(const vxm_repeats *d, size_t face) {
   const vxm_copies *c = &d->copies[face];
   return c->rank < d->keep[2 * c->first + c->turned];
 }
 
 /** Whether a face is one of those that tell inside from outside; in groups that are not balanced only faces
  * that repeat no other are. */
-static bool bounds(const deciding *d, size_t face) {
-  kind k = (kind)d->kinds[d->copies[face].first];
+static bool bounds(const vxm_repeats *d, size_t face) {
+  vxm_face_kind k = (vxm_face_kind)d->kinds[d->copies[face].first];
   bool balanced = d->groups.groups[d->groups.of_face[face]].balanced;
-  return stays(d, face) && (k == PLAIN || (k == SAME_WAY && balanced));
+  return stays(d, face) && (k == VXM_KIND_PLAIN || (k == VXM_KIND_SAME_WAY && balanced));
 }
 
 /** Whether a face belongs to sheets that are closed for themselves: they may be a body that lies at the solid
  * with a face or two, so that one face does not tell of the others; or cores with the cavity that they fill,
  * and walls between them. */
-static bool may_be_body(const deciding *d, size_t face) {
-  const fin *f = &d->fins[vxm_set_of(d->parent, face)];
-  return d->kinds[face] == SHEET && !f->hangs && (f->touches ? !f->rimmed : !f->ends);
+static bool may_be_body(const vxm_repeats *d, size_t face) {
+  const vxm_fin *f = &d->fins[vxm_set_of(d->parent, face)];
+  return d->kinds[face] == VXM_KIND_SHEET && !f->hangs && (f->touches ? !f->rimmed : !f->ends);
 }
 
 /** Decides about the fins, of which `within` are inside the solid. */
-static void settle(deciding *d, const uint8_t *within) {
+static void settle(vxm_repeats *d, const uint8_t *within) {
   for (size_t face = 0; face < d->soup->face_count; face++) {
-    if (d->kinds[face] == PLAIN)
+    if (d->kinds[face] == VXM_KIND_PLAIN)
       continue;
     size_t root = vxm_set_of(d->parent, face), group = d->groups.of_face[face];
-    const fin *f = &d->fins[root];
+    const vxm_fin *f = &d->fins[root];
     const vxm_copies *c = &d->copies[face];
-    bool balanced = d->groups.groups[group].balanced, sheet = d->kinds[face] == SHEET;
+    bool balanced = d->groups.groups[group].balanced, sheet = d->kinds[face] == VXM_KIND_SHEET;
     uint32_t *keep = &d->keep[2 * face];
     if (vxm_repair_state_guards(d->state, face))
       continue;
@@ -268,12 +132,13 @@ static void settle(deciding *d, const uint8_t *within) {
  * A wall between a room and another one that is inside out may go only where the rooms can be turned alike
  * afterwards: where no edge of the group has more than two sides without it.
  */
-static void keep_tangled(deciding *d, uint8_t *within) {
+static void keep_tangled(vxm_repeats *d, uint8_t *within) {
   uint32_t *going = d->single;
   memset(going, 0, d->state->edges.count * sizeof *going);
   for (size_t face = 0; face < d->soup->face_count; face++)
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++)
-      if (d->kinds[face] != PLAIN && d->groups.sides[c] != VXM_NO_EDGE && within[vxm_set_of(d->parent, face)])
+      if (d->kinds[face] != VXM_KIND_PLAIN && d->groups.sides[c] != VXM_NO_EDGE &&
+          within[vxm_set_of(d->parent, face)])
         going[d->groups.sides[c]] += d->copies[face].same + d->copies[face].opposite;
   for (size_t face = 0; face < d->soup->face_count; face++)
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
@@ -282,29 +147,29 @@ static void keep_tangled(deciding *d, uint8_t *within) {
         d->tangled[d->groups.of_face[face]] = 1;
     }
   for (size_t face = 0; face < d->soup->face_count; face++)
-    if (d->kinds[face] == SAME_WAY && d->tangled[d->groups.of_face[face]])
+    if (d->kinds[face] == VXM_KIND_SAME_WAY && d->tangled[d->groups.of_face[face]])
       within[face] = 0;
 }
 
 /** Whether the sides of a face of the same way, in a balanced group, have to be asked: all of these, as a fin
  * may go on from a wall between bodies to a skin that two of them share. */
-static bool may_be_wall(const deciding *d, size_t face) {
-  return d->kinds[face] == SAME_WAY && d->groups.groups[d->groups.of_face[face]].balanced &&
+static bool may_be_wall(const vxm_repeats *d, size_t face) {
+  return d->kinds[face] == VXM_KIND_SAME_WAY && d->groups.groups[d->groups.of_face[face]].balanced &&
          d->fins[vxm_set_of(d->parent, face)].most == 2;
 }
 
-static bool is_asked(const deciding *d, size_t face) {
+static bool is_asked(const vxm_repeats *d, size_t face) {
   size_t root = vxm_set_of(d->parent, face);
-  if (d->kinds[face] == PLAIN)
+  if (d->kinds[face] == VXM_KIND_PLAIN)
     return false;
   if (!d->fins[root].touches)
     return may_be_body(d, face);
-  bool whole = d->kinds[face] == SHEET || !d->groups.groups[d->groups.of_face[face]].balanced;
+  bool whole = d->kinds[face] == VXM_KIND_SHEET || !d->groups.groups[d->groups.of_face[face]].balanced;
   return whole ? root == face || may_be_body(d, face) : may_be_wall(d, face);
 }
 
 /** Asks one face of a fin, or all of them, whether they lie within the solid: all have to. */
-static vxm_status ask(deciding *d, vxm_face_set_side *sets, size_t asked, const uint8_t *bound,
+static vxm_status ask(vxm_repeats *d, vxm_face_set_side *sets, size_t asked, const uint8_t *bound,
                       uint8_t *within, vxm_error *error) {
   vxm_status status = vxm_face_set_sides_find(sets, asked, d->state, &d->groups, bound, false, error);
   for (size_t i = 0; status == VXM_OK && i < asked; i++)
@@ -320,7 +185,7 @@ static vxm_status ask(deciding *d, vxm_face_set_side *sets, size_t asked, const 
   return status;
 }
 
-static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
+static vxm_status find_within(vxm_repeats *d, uint8_t *within, vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t faces = d->soup->face_count, asked = 0;
   uint8_t *bound = vxm_repair_state_scratch(d->state, faces, sizeof *bound, &status, error);
@@ -352,7 +217,7 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
  * in other things is taken for a cavity of these if it is turned inward. `counts` and `turn` are scratch per
  * face.
  */
-static vxm_status keep_outer(deciding *d, uint8_t *counts, uint8_t *turn, vxm_error *error) {
+static vxm_status keep_outer(vxm_repeats *d, uint8_t *counts, uint8_t *turn, vxm_error *error) {
   bool any = false;
   for (size_t face = 0; face < d->soup->face_count; face++) {
     counts[face] = may_be_body(d, face) && !d->fins[vxm_set_of(d->parent, face)].rimmed &&
@@ -372,13 +237,12 @@ static vxm_status keep_outer(deciding *d, uint8_t *counts, uint8_t *turn, vxm_er
 
 /* ---- All of it ---- */
 
-static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *remove, vxm_error *error) {
+static vxm_status decide(vxm_repeats *d, int8_t *tally, uint8_t *within, uint8_t *remove, vxm_error *error) {
   for (size_t face = 0; face < d->soup->face_count; face++)
-    if (is_first(d, face))
+    if (vxm_repeats_is_first(d, face))
       begin_kind(d, face);
-  find_fins(d);
-  for (int round = 0; round < PEELS_MAX && peel(d); round++)
-    find_fins(d);
+  vxm_repeats_find_fins(d);
+  vxm_repeats_peel(d);
   sum_areas(d);
   look_at_sides(d, tally);
   vxm_status status = find_within(d, within, error);
@@ -394,7 +258,7 @@ static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *r
   return VXM_OK;
 }
 
-static vxm_status prepare(deciding *d, int8_t **tally, uint8_t **within, vxm_error *error) {
+static vxm_status prepare(vxm_repeats *d, int8_t **tally, uint8_t **within, vxm_error *error) {
   vxm_repair_state *state = d->state;
   size_t faces = d->soup->face_count;
   vxm_status status = vxm_edge_groups_find(&d->groups, state, error);
@@ -431,7 +295,7 @@ vxm_status vxm_repeated_faces_mark(vxm_repair_state *state, const vxm_copies *co
                                    vxm_error *error) {
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
-  deciding d = {
+  vxm_repeats d = {
       .state = state, .soup = state->soup, .copies = copies, .scale = vxm_unit_scale_of(extent.bounds).scale};
   int8_t *tally = NULL;
   uint8_t *within = NULL;

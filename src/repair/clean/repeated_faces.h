@@ -12,8 +12,9 @@
  * A group is a set of faces that edges connect (repair/state/edge_groups.h). In an open group one of several
  * faces that repeat each other stays: a sheet that was drawn from both sides is one sheet. In a closed group
  * a set of repeated faces that edges connect is judged as a whole:
- *  - If it is closed by itself, as a body that is there twice, one copy of each of its faces stays: of what
- * was drawn from both sides, and does not lie within the solid, the outer one.
+ *  - If it is closed by itself, as a body that is there twice, one copy of each of its faces stays, also
+ *    where another body shares some of them: of what was drawn from both sides, and does not lie within the
+ *    solid, the outer one.
  *  - If it lies within the solid on both sides, as the wall between two rooms, or between a block and what
  *    fills a void of it, all of it goes; of what was drawn from both sides and is closed by itself, only if
  *    each of its faces lies there. Groups that lie around all of this one count (face_set_sides.h).

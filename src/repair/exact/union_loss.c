@@ -1,88 +1,150 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/exact/union_loss.h"
 
+#include "mesh/box_tree.h"
 #include "mesh/components.h"
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
 #include "repair/state/lost_parts.h"
 
-typedef struct component {
-  const double *origin; /**< one of its corners */
-  double volume;        /**< in the frame */
-} component;
+#include <math.h>
 
-static void measure(component *components, const vxm_soup *soup, const uint32_t *label, double scale) {
+typedef enum kind {
+  KIND_BODY,
+  KIND_CAVITY,
+  KIND_IN_CAVITY /**< a body that may lie in a cavity, by their boxes */
+} kind;
+
+typedef struct looking {
+  vxm_context *context;
+  const vxm_soup *before, *united;
+  uint32_t *label; /**< per face of `before` */
+  size_t count;    /**< components */
+  double *volume;  /**< per component, in the frame */
+  double (*box)[6];
+  kind *kinds;
+  vxm_error error;
+} looking;
+
+static void measure(looking *l, double scale) {
+  const vxm_soup *soup = l->before;
+  for (size_t i = 0; i < l->count; i++)
+    for (int x = 0; x < 6; x++)
+      l->box[i][x] = x < 3 ? INFINITY : -INFINITY;
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
-    component *c = &components[label[f]];
+    double *box = l->box[l->label[f]];
+    for (size_t c = 0; c < count; c++) {
+      const double *p = vxm_position(soup, corner[c]);
+      for (int x = 0; x < 3; x++) {
+        box[x] = fmin(box[x], p[x]);
+        box[x + 3] = fmax(box[x + 3], p[x]);
+      }
+    }
+  }
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
     if (count == 0)
       continue;
-    if (!c->origin)
-      c->origin = vxm_position(soup, corner[0]);
     vxm_vec3 area = vxm_polygon_area(soup->positions, corner, count, scale);
-    c->volume += vxm_polygon_cone(vxm_vec3_between(vxm_position(soup, corner[0]), c->origin, scale), area);
+    l->volume[l->label[f]] +=
+        vxm_polygon_cone(vxm_vec3_between(vxm_position(soup, corner[0]), l->box[l->label[f]], scale), area);
   }
 }
 
-/** Adds the faces of a soup, of several components those that look inward alone. */
-static vxm_status append(vxm_soup *to, const vxm_soup *from, const uint32_t *label,
-                         const component *components, vxm_error *error) {
-  size_t first = to->vertex_count;
-  vxm_status status =
-      vxm_soup_reserve(to, first + from->vertex_count, to->face_count, to->corner_count, error);
-  if (status == VXM_OK)
-    status = vxm_soup_add_vertices(to, from, error);
-  for (size_t f = 0; f < from->face_count && status == VXM_OK; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(from, f, &count);
-    if (components && !(components[label[f]].volume < 0))
-      continue;
-    status = vxm_soup_add_face(to, corner, count, error);
-    for (size_t c = to->corner_count - count; c < to->corner_count && status == VXM_OK; c++)
-      to->indices[c] += (uint32_t)first;
+static void find_kinds(looking *l) {
+  vxm_box_tree cavities;
+  double(*box)[6] = vxm_alloc(l->context, l->count, sizeof *box, &l->error);
+  for (size_t i = 0; box && i < l->count; i++) {
+    l->kinds[i] = l->volume[i] < 0 ? KIND_CAVITY : KIND_BODY;
+    for (size_t x = 0; x < 6; x++)
+      box[i][x] = l->kinds[i] == KIND_CAVITY ? l->box[i][x] : x < 3 ? INFINITY : -INFINITY;
   }
-  return status;
+  if (box && vxm_box_tree_build(&cavities, l->context, box, l->count, &l->error) == VXM_OK) {
+    for (size_t i = 0; i < l->count; i++) {
+      vxm_box_tree_search(&cavities, l->box[i], 0);
+      if (l->kinds[i] == KIND_BODY && vxm_box_tree_next(&cavities) != VXM_NO_BOX)
+        l->kinds[i] = KIND_IN_CAVITY;
+    }
+    vxm_box_tree_destroy(&cavities);
+  }
+  vxm_free(l->context, box);
 }
 
-/** What is enclosed after the union, and the cavities that were there before: these take away what they may.
- */
-static vxm_status find_rest(vxm_soup *rest, const vxm_soup *before, const vxm_soup *united,
-                            vxm_error *error) {
-  vxm_extent extent;
-  vxm_error local = VXM_ERROR_INIT;
-  size_t count;
-  uint32_t *label = vxm_alloc(before->context, before->face_count, sizeof *label, &local);
-  vxm_status status =
-      label ? vxm_components(before->context, before, NULL, label, &count, &local) : local.code;
-  component *components = NULL;
-  if (status == VXM_OK)
-    components = vxm_calloc(before->context, count, sizeof *components, &local);
-  if (components && vxm_extent_find(&extent, before->context, before, &local) == VXM_OK) {
-    measure(components, before, label, vxm_unit_scale_of(extent.bounds).scale);
-    if (append(rest, united, NULL, NULL, &local) == VXM_OK)
-      append(rest, before, label, components, &local);
+/** Components of some kinds, bits of 1 << kind, behind the faces of another soup, which may be NULL. */
+static vxm_soup *collect(looking *l, const vxm_soup *first, unsigned kinds) {
+  vxm_soup *out;
+  const vxm_soup *both[2] = {first, l->before};
+  if (l->error.code != VXM_OK || vxm_soup_create(&out, l->context, "off", &l->error) != VXM_OK)
+    return NULL;
+  for (int s = first ? 0 : 1; s < 2; s++) {
+    size_t before = out->vertex_count;
+    vxm_soup_add_vertices(out, both[s], &l->error);
+    for (size_t f = 0; f < both[s]->face_count && l->error.code == VXM_OK; f++) {
+      size_t count;
+      const uint32_t *corner = vxm_face(both[s], f, &count);
+      if (s == 1 && !(1U << l->kinds[l->label[f]] & kinds))
+        continue;
+      vxm_soup_add_face(out, corner, count, &l->error);
+      for (size_t c = out->corner_count - count; c < out->corner_count && l->error.code == VXM_OK; c++)
+        out->indices[c] += (uint32_t)before;
+    }
   }
-  vxm_free(before->context, components);
-  vxm_free(before->context, label);
-  if (local.code != VXM_OK)
-    vxm_error_pass(error, &local);
-  return local.code;
+  return out;
+}
+
+static int64_t count_lost(looking *l, const vxm_soup *before, const vxm_soup *after) {
+  vxm_lost_parts lost = {0};
+  if (l->error.code == VXM_OK)
+    vxm_lost_parts_find(&lost, before, after, &l->error);
+  int64_t count = (int64_t)lost.count;
+  vxm_lost_parts_free(&lost, l->context);
+  return count;
+}
+
+/** Cavities that were there before take away what they may of the bodies that they cut through, and nothing
+ * of those that lie in them. */
+static int64_t compare(looking *l) {
+  bool any = false;
+  for (size_t i = 0; i < l->count && l->error.code == VXM_OK; i++)
+    any |= l->kinds[i] == KIND_IN_CAVITY;
+  vxm_soup *rest = collect(l, l->united, 1U << KIND_CAVITY);
+  vxm_soup *bodies = any ? collect(l, NULL, 1U << KIND_BODY | 1U << KIND_CAVITY) : NULL;
+  vxm_soup *in_cavities = any ? collect(l, NULL, 1U << KIND_IN_CAVITY) : NULL;
+  int64_t count = count_lost(l, any ? bodies : l->before, rest);
+  if (any)
+    count += count_lost(l, in_cavities, l->united);
+  vxm_soup_destroy(in_cavities);
+  vxm_soup_destroy(bodies);
+  vxm_soup_destroy(rest);
+  return count;
 }
 
 vxm_status vxm_union_loss_find(int64_t *count, const vxm_soup *before, const vxm_soup *united,
                                vxm_error *error) {
-  vxm_soup *rest;
+  looking l = {.context = before->context, .before = before, .united = united, .error = VXM_ERROR_INIT};
+  vxm_extent extent;
   *count = 0;
-  vxm_status status = vxm_soup_create(&rest, before->context, "off", error);
-  if (status != VXM_OK)
-    return status;
-  vxm_lost_parts lost = {0};
-  status = find_rest(rest, before, united, error);
-  if (status == VXM_OK)
-    status = vxm_lost_parts_find(&lost, before, rest, error);
-  *count = status == VXM_OK ? (int64_t)lost.count : 0;
-  vxm_lost_parts_free(&lost, before->context);
-  vxm_soup_destroy(rest);
-  return status;
+  l.label = vxm_alloc(l.context, before->face_count, sizeof *l.label, &l.error);
+  if (l.label)
+    vxm_components(l.context, before, NULL, l.label, &l.count, &l.error);
+  l.volume = l.error.code == VXM_OK ? vxm_calloc(l.context, l.count, sizeof *l.volume, &l.error) : NULL;
+  l.box = l.volume ? vxm_alloc(l.context, l.count, sizeof *l.box, &l.error) : NULL;
+  l.kinds = l.box ? vxm_alloc(l.context, l.count, sizeof *l.kinds, &l.error) : NULL;
+  if (l.kinds && vxm_extent_find(&extent, l.context, before, &l.error) == VXM_OK) {
+    measure(&l, vxm_unit_scale_of(extent.bounds).scale);
+    find_kinds(&l);
+    *count = compare(&l);
+  }
+  vxm_free(l.context, l.kinds);
+  vxm_free(l.context, l.box);
+  vxm_free(l.context, l.volume);
+  vxm_free(l.context, l.label);
+  if (l.error.code == VXM_OK)
+    return VXM_OK;
+  *count = 0;
+  vxm_error_pass(error, &l.error);
+  return l.error.code;
 }

@@ -61,8 +61,9 @@ typedef struct vxm_cgal {
    *
    * A component that is wound outward is solid where it winds around a place at least once. One that is wound
    * inward is a cavity of the smallest solid that it lies inside of without touching it. Where there is none
-   * it is subtracted from all that it touches; where it touches nothing it is left as it is and counted as
-   * failed.
+   * it is one of those that it lies inside of and touches, but for a ten-thousandth of it; where these are
+   * none, too, it is subtracted from all that it touches but from those that lie in it; where it touches
+   * nothing it is left as it is and counted as failed.
    *
    * The surface is cut exactly and then rounded to doubles; no two of its faces meet elsewhere than in
    * corners and edges they share, and none is without area. Where doubles cannot hold that, the parts

@@ -14,9 +14,10 @@ enum { HALVINGS = 8, ROUNDS = 8 };
 /** As VXM_FLAT, for vertices that are to lie beyond planes which nearly face each other. */
 static const double SHARP = 1e-9;
 
-/** Vertices of plates lie on a lattice of this part of the distance, so that plates which are to lie in one
- * plane do, whatever their normals were rounded to; a union leaves slivers between them else. */
-enum { LATTICE_BITS = 10 };
+/** Vertices of plates move by multiples of this part of the distance, so that plates which are to lie in one
+ * plane do, whatever their normals were rounded to; a union leaves slivers between them else. Were they put on
+ * a lattice, plates would not be as thick as they are to be. */
+static const double STEP = 0x1p-32;
 
 /** What a cut across a crease costs, as angles about the vertex times squared distances: rather the flat side
  * of an edge is cut than the crease beside it. */
@@ -167,15 +168,12 @@ static vxm_status number_corners(offsetting *o, vxm_error *error) {
 }
 
 static void place_vertices(offsetting *o, double distance) {
-  const double lattice = ldexp(1, ilogb(distance) - LATTICE_BITS);
   for (uint32_t v = 0; v < o->out->count; v++) {
     const double *from = vxm_position(o->sides->soup, o->place[v]);
     double part = ldexp(distance, -o->halved[v]), *p = o->out->positions + 3 * (size_t)v;
     const double by[3] = {o->vector[v].x, o->vector[v].y, o->vector[v].z};
-    for (int a = 0; a < 3; a++) {
-      p[a] = from[a] + part * by[a];
-      p[a] = lattice > 0 ? lattice * rint(p[a] / lattice) : p[a];
-    }
+    for (int a = 0; a < 3; a++)
+      p[a] = from[a] + part * (STEP * rint(by[a] / STEP));
   }
 }
 

@@ -70,14 +70,18 @@ static bool gather(float block[VOXELS], const vxm_vdb_field *field, const float 
   return memcmp(block, block + 1, (VOXELS - 1) * sizeof *block) == 0;
 }
 
+/** To the sign of 0. */
+static bool is_background(const vxm_vdb_field *field, float value) {
+  return memcmp(&value, &field->kind.background, sizeof value) == 0;
+}
+
 static vxm_status put_block(const vxm_vdb_field *field, const float block[VOXELS], bool is_even,
                             const int64_t at[3], vxm_error *error) {
   const vxm_vdb_functions *functions = field->target.functions;
   if (!is_even)
     return functions->put_numbers(field->target.vdb, at, block, error);
-  return block[0] == field->kind.background
-             ? VXM_OK
-             : functions->put_cube(field->target.vdb, at, SIDE, block[0], error);
+  return is_background(field, block[0]) ? VXM_OK
+                                        : functions->put_cube(field->target.vdb, at, SIDE, block[0], error);
 }
 
 static vxm_status put_slab(const vxm_vdb_field *field, int64_t x, int64_t slices, vxm_error *error) {
@@ -158,7 +162,7 @@ vxm_status vxm_vdb_field_put_tile(vxm_vdb_field *field, const vxm_value_tile *ti
   const int64_t at[3] = {tile->first[2], tile->first[1], tile->first[0]};
   pthread_mutex_lock(&field->mutex);
   vxm_status status =
-      tile->value == field->kind.background
+      is_background(field, tile->value)
           ? VXM_OK
           : field->target.functions->put_cube(field->target.vdb, at, VXM_VALUE_TILE, tile->value, error);
   pthread_mutex_unlock(&field->mutex);

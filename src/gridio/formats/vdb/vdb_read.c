@@ -64,7 +64,8 @@ static vxm_status take_text(void *payload, const char *key, size_t key_size, con
     declare(&r->about, VXM_FIELD_DISTANCE);
   else if (equals(key, key_size, "class") && !r->about.is_declared && equals(value, value_size, "fog volume"))
     declare(&r->about, VXM_FIELD_COVERAGE);
-  else if (equals(key, key_size, "voxmend_values") && vxm_field_kind_find(&kind, word))
+  else if (equals(key, key_size, "voxmend_values") && vxm_field_kind_find(&kind, word) &&
+           kind != VXM_FIELD_NUMBERS)
     declare(&r->about, kind);
   else if (equals(key, key_size, "voxmend_scalar"))
     vxm_scalar_find(&r->scalar, word);
