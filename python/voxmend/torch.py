@@ -148,7 +148,7 @@ class VoxelDataset(Dataset):
                 self._held.move_to_end(model)
                 continue
             mesh = self._repaired(self.files[model])
-            self._sampler.put(mesh, model)
+            self._sampler.put(mesh, model, repair=False)
             self._held[model] = 64 * len(mesh.indices) + 128 * len(mesh.vertices)
         total = sum(self._held.values())
         for model in list(self._held):
