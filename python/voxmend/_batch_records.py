@@ -9,13 +9,13 @@ from array import array
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ._errors import ArgumentError, FormatError
+from ._placement import place, split_as
 
 GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb", ".octree", ".bt", ".nii", ".nii.gz", ".vti", ".vtk", ".tif", ".h5",
          ".vox", ".schem", ".litematic", ".zarr")
 DONE = ("ok", "degraded", "duplicate")
 _HEAD, _SUM, _TAIL = b'{"sum":"', 16, b'",'
 _REST = len(_HEAD) + _SUM + len(_TAIL)
-_SPLITS = ("train", "test", "val", "valid", "validation")
 
 
 def is_whole(line: bytes) -> bool:
@@ -59,14 +59,9 @@ class Item(NamedTuple):
 
 
 def _place(plan: Dict[str, Any]) -> Tuple[str, str]:
-    """Class and split: what the plan tells, or the folders as in ModelNet: chair/train/chair_0001.off."""
-    folders = plan["item"].split("/")[:-1]
-    kind, split = plan.get("class"), plan.get("split")
-    if split is None:
-        split = next((name for name in folders[:2] if name.lower() in _SPLITS), "")
-    if kind is None:
-        kind = next((name for name in folders if name.lower() not in _SPLITS), "")
-    return str(kind), str(split)
+    """Class and split: what the plan tells, or else the folders."""
+    kind, split = place(plan["item"])
+    return str(plan.get("class", kind)), split_as(str(plan.get("split", split)))
 
 
 class Records:

@@ -14,6 +14,7 @@ from ._call_lock import CallLock, watch_forks
 from ._errors import EmptyError
 from ._grid_sources import open_source
 from ._packed import unpack as unpack_rows
+from ._placement import split_as
 from ._types import Array
 
 
@@ -26,7 +27,8 @@ class GridDataset(Dataset):
 
     Args:
         root: the folder.
-        split: only those of this split, as the plan tells or the folders (chair/train/...); None = all.
+        split: only those of this split, as the plan tells or the folders (chair/train/...); None = all. The words that stand
+            for "train", "test" and "val", such as "Training", are one, there and here: doc/datasets.md.
         packed: items are (nx, ny, ceil(nz / 8)) uint8, see `unpack`, rather than (1, nx, ny, nz) float32.
 
     Attributes:
@@ -44,6 +46,7 @@ class GridDataset(Dataset):
         self.classes: List[str] = list(self._source.classes)
         self.packed = _values.flag("dataset: packed", packed)
         self.shape = self._source.shape
+        split = None if split is None else split_as(_values.word("dataset: split", split))
         if split is not None and split not in self._source.splits:
             raise EmptyError("%s: no grid is of the split %r; there are %s" %
                              (self.root, split, sorted(set(self._source.splits))))

@@ -21,6 +21,7 @@ from ._export_common import describe, packed_grid, with_grids
 from ._field import VALUE_KINDS, VoxelField
 from ._grid import read
 from ._packed import pack
+from ._placement import split_as
 from ._types import Array
 
 
@@ -43,7 +44,8 @@ class _Told:
                                 (where, told["item"], shape, self.shape))
         self.names.append(told["item"])
         self.kinds.append(self._known.setdefault(told["class"], told["class"]))
-        self.splits.append(self._known.setdefault(told["split"], told["split"]))
+        split = split_as(told["split"])
+        self.splits.append(self._known.setdefault(split, split))
 
 
 class Source:

@@ -28,6 +28,7 @@ from ._errors import ArgumentError, EmptyError
 from ._grid_dataset import GridDataset, order_by_groups
 from ._mesh import Mesh
 from ._mesh_sources import load
+from ._placement import place, split_named
 from ._repair import repair
 from ._sampler import Sampler
 from ._types import Array
@@ -37,24 +38,39 @@ __all__ = ["EXTENSIONS", "GridDataset", "IterableVoxelDataset", "VoxelDataset", 
 EXTENSIONS = (".off", ".obj", ".stl", ".ply", ".glb", ".gltf", ".3mf", ".dae", ".fbx", ".step", ".stp", ".iges", ".igs")
 
 
-def _files_of(folder: str) -> List[str]:
-    return sorted(os.path.join(at, name) for at, _, names in os.walk(folder) for name in names
-                  if name.lower().endswith(EXTENSIONS))
+def _meshes_below(folder: str, prefix: str = "", above: Tuple[Tuple[int, int], ...] = ()) -> Iterator[Tuple[str, str]]:
+    """Names from the folder on, and paths, of what `voxmend batch` would take: not what is hidden, or a link to nothing or
+    back."""
+    state = os.stat(folder)
+    here = (state.st_dev, state.st_ino)
+    for entry in os.scandir(folder) if here not in above else ():
+        if entry.name.startswith("."):
+            continue
+        name = prefix + entry.name
+        if os.path.isdir(entry.path) if entry.is_symlink() else entry.is_dir():
+            yield from _meshes_below(entry.path, name + "/", above + (here,))
+        elif name.lower().endswith(EXTENSIONS) and os.path.isfile(entry.path):
+            yield name, entry.path
 
 
-def _has_mesh(folder: str) -> bool:
-    return any(name.lower().endswith(EXTENSIONS) for _, _, names in os.walk(folder) for name in names)
+def _is_of(split: Optional[str], where: Tuple[str, str], name: str) -> bool:
+    """Whether a mesh, whose class and split are told, is of a split: one that is known, or any folder below the class."""
+    if split is None or split_named(split):
+        return split is None or split_named(split) == where[1]
+    return name.startswith("%s/%s/" % (where[0], split.strip("/")))
 
 
 class VoxelDataset(Dataset):
-    """The meshes of a folder of class folders, as in ModelNet: `root/chair/train/chair_0001.off`; or `root/chair/*.off`.
+    """The meshes of a folder of class folders, as in ModelNet: `root/chair/train/chair_0001.off`; or `root/chair/*.off`, or
+    `root/train/chair/*.off`.
 
     Item i is variant i // models of model i % models, in the present epoch: the same whoever asks for it, in whatever
     process, and another one in each epoch.
 
     Args:
         root: folder of the class folders; the sorted names of those with a mesh in them, in whatever split, are the classes.
-        split: folder within each of them, such as "train" or "test"; None = all files of a class.
+        split: "train", "test", "val", or another word for one of them (doc/datasets.md), in which the folders may be called
+            otherwise; or any folder within those of the classes; None = all files of a class.
         resolution: D, voxels along each axis.
         variants: of each model in an epoch.
         packed: items are (D, D, ceil(D / 8)) uint8, see `unpack`, rather than (1, D, D, D) float32.
@@ -69,18 +85,18 @@ class VoxelDataset(Dataset):
                  packed: bool = False, seed: int = 0, cache: Any = None, memory: int = 1 << 30, level: str = "clean",
                  **augment: Any):
         self.root = os.fsdecode(_values.path(root))
+        split = None if split is None else _values.word("dataset: split", split)
         for name, value, least in (("resolution", resolution, 1), ("variants", variants, 0), ("memory", memory, 0)):
             _values.whole("dataset: " + name, value, least)
-        self.classes = sorted(e.name for e in os.scandir(self.root)
-                              if e.is_dir() and not e.name.startswith(".") and _has_mesh(e.path))
-        self.files: List[str] = []
-        self.labels: List[int] = []
-        for label, name in enumerate(self.classes):
-            found = _files_of(os.path.join(self.root, name, split or ""))
-            self.files += found
-            self.labels += [label] * len(found)
-        if not self.files:
-            raise EmptyError("%s: no mesh in class folders%s" % (self.root, ", in " + split if split else ""))
+        found = [(place(name), name, path) for name, path in _meshes_below(self.root)]
+        self.classes = sorted({kind for (kind, _), _, _ in found if kind})
+        numbers = {name: label for label, name in enumerate(self.classes)}
+        chosen = sorted((numbers[where[0]], path) for where, name, path in found if where[0] and _is_of(split, where, name))
+        self.files: List[str] = [path for _, path in chosen]
+        self.labels: List[int] = [label for label, _ in chosen]
+        if not chosen:
+            raise EmptyError("%s: no mesh in class folders%s" % (self.root, "" if split is None else
+                             ", of the split %r; there are %s" % (split, sorted({where[1] for where, _, _ in found if where[1]}))))
         self.resolution, self.variants, self.packed, self.level = resolution, variants, packed, level
         self.cache = None if cache is None else os.fspath(cache)
         self.memory = memory

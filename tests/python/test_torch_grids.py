@@ -16,6 +16,7 @@ from torch.utils.data import DataLoader
 
 import voxmend
 import voxmend.batch
+from voxmend._placement import place
 from voxmend.torch import GridDataset, IterableVoxelDataset, VoxelDataset, unpack
 
 from batch_lib import SAMPLES, make_batch, remove
@@ -99,6 +100,54 @@ class Grids(unittest.TestCase):
                                   if mended or "/c/" not in file}, labels)
             for root in roots[1:]:
                 remove(root)
+
+    def test_names_of_splits(self):
+        """The plan, what is read of it and folders of meshes agree about what is a split, a class, or neither."""
+        words = {"train": "train", "TRAIN": "train", "Training": "train", "test": "test", "Test": "test", "testing": "test",
+                 "val": "val", "Valid": "val", "validation": "val", "validate": "val", "trained": "", "extra": "", "validity": ""}
+        names = ["chair/%s/x.off" % word for word in words] + ["lamp/x.off", "group/desk/test/x.off", "bed/extra/more/train/x.off",
+                                                                "toy/a/val/b/x.off"]
+        meshes, out = os.path.join(self.folder.name, "words"), os.path.join(self.folder.name, "words-out")
+        for number, name in enumerate(names):
+            os.makedirs(os.path.dirname(os.path.join(meshes, name)))
+            with open(os.path.join(SAMPLES, "cube.off")) as source, open(os.path.join(meshes, name), "w") as file:
+                file.write(source.read() + "# %d\n" % number)
+        voxmend.batch.run(meshes, out, options="-r 4")
+        told = {item.item: (item.plan.get("class", ""), item.plan.get("split", "")) for item in voxmend.batch.Records(out)}
+        self.assertEqual({name: place(name) for name in names}, told)
+        self.assertEqual({word: told["chair/%s/x.off" % word] for word in words},
+                         {word: ("chair", split) for word, split in words.items()})
+        self.assertEqual([told[name] for name in names[-4:]], [("lamp", ""), ("desk", "test"), ("more", "train"), ("toy", "")])
+        for split, wanted in (("train", 4), ("TRAINING", 4), ("Test", 4), ("valid", 4), (None, 17)):
+            grids, models = GridDataset(out, split), VoxelDataset(meshes, split, 4)
+            self.assertEqual(len(grids), wanted)
+            self.assertEqual(sorted(grids.names), sorted(os.path.relpath(file, meshes) for file in models.files))
+            self.assertEqual(grids.classes, models.classes)
+            self.assertEqual(sorted(grids.labels), sorted(models.labels))
+        self.assertEqual(len(VoxelDataset(meshes, "extra", 4)), 1)  # any folder below the class
+        with self.assertRaisesRegex(voxmend.EmptyError, "'none'; there are .'test', 'train', 'val'.$"):
+            VoxelDataset(meshes, "none", 4)
+        older = os.path.join(out, ".batch", "plan.jsonl")  # of a batch that kept the words
+        with open(older) as file:
+            plan = file.read()
+        with open(older, "w") as file:
+            file.write(plan.replace('"split":"train"', '"split":"Train"'))
+        self.assertEqual(len(GridDataset(out, "train")), 4)
+
+    def test_splits_above_classes(self):
+        """train/chair/x.off, as torchvision's ImageFolder has it; folders may be links."""
+        meshes, out = os.path.join(self.folder.name, "above"), os.path.join(self.folder.name, "above-out")
+        for name in ("train/chair/a.off", "Train/chair/b.off", "train/lamp/a.off", "test/chair/a.off", "train/.hidden/a.off"):
+            os.makedirs(os.path.dirname(os.path.join(meshes, name)), exist_ok=True)
+            shutil.copy(os.path.join(SAMPLES, "cube.off"), os.path.join(meshes, name))
+        os.symlink("../train/lamp", os.path.join(meshes, "test", "bed"))
+        os.symlink("..", os.path.join(meshes, "test", "chair", "back"))
+        voxmend.batch.run(meshes, out, options="-r 4")
+        for split, wanted in (("train", ["chair", "chair", "lamp"]), ("test", ["bed", "chair"]),
+                              (None, ["bed", "chair", "chair", "chair", "lamp"])):
+            for data in GridDataset(out, split), VoxelDataset(meshes, split, 4):
+                self.assertEqual(data.classes, ["bed", "chair", "lamp"])
+                self.assertEqual(sorted(data.classes[label] for label in data.labels), wanted)
 
     def test_padded_and_not_cubic(self):
         out = os.path.join(self.folder.name, "flat")
