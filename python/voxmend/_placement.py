@@ -23,6 +23,6 @@ def place(name: str) -> Tuple[str, str]:
     folders = name.split("/")[:-1]
     if folders and split_named(folders[-1]):
         folders = folders[-2:]  # also data/ModelNet40/chair/train/1.off
-    kind = next((folder for folder in folders if not split_named(folder)), "")
+    kind = next((folder for folder in folders if not split_named(folder) and folder not in ("", ".", "..")), "")
     split = next((folder for folder in folders[:2] if split_named(folder)), "")
     return kind, split_as(split)

@@ -33,13 +33,18 @@ static const char *first_folder(const char *name) {
   return batch_split_named(last, (size_t)(slash - last)) ? folder_before(name, last) : name;
 }
 
+/** "", "." and "..", of paths in lists. */
+static bool is_nameless(const char *folder, size_t length) {
+  return length <= 2 && strspn(folder, ".") >= length;
+}
+
 bool batch_place(char **kind, char **split, const char *name) {
   const char *folder = first_folder(name), *slash;
   bool good = true;
   for (int depth = 0; good && (slash = strchr(folder, '/')); depth++) {
     size_t length = (size_t)(slash - folder);
     const char *named = batch_split_named(folder, length);
-    char **out = named ? (depth < 2 ? split : NULL) : kind;
+    char **out = named ? (depth < 2 ? split : NULL) : is_nameless(folder, length) ? NULL : kind;
     if (out && !*out) {
       *out = named ? strdup(named) : strndup(folder, length);
       good = *out != NULL;

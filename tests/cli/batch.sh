@@ -117,6 +117,13 @@ cp in/cube.off net/chair/train/chair_1.off
 cp in/torus.off net/chair/test/chair_2.off
 run 'voxmend batch net -o netted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" netted/.batch/plan.jsonl'
 run 'find net -name "*.off" >net.txt && voxmend batch net.txt -o enlisted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" enlisted/.batch/plan.jsonl'
+# In a table blanks around cells do not count, but in quotes those of paths do; what it leaves open folders tell, and a column
+# that nobody knows is told.
+cp in/sphere.off "net/chair/test/ 3.off"
+printf 'Path, id ,"class ", split ,splits,note\nchair/train/chair_1.off, one, "seat ",Training ,x,\nchair/test/chair_2.off ,two,, \n \n"chair/test/ 3.off" , a/b,,\r\n' >net/spaced.csv
+run 'voxmend batch net/spaced.csv -o spaced -r 8 --pictures 0 -q --strict'
+run 'voxmend batch net/spaced.csv -o spaced -r 8 --pictures 0 && grep -oE "\"(item|class|split)\":\"[^\"]*\"" spaced/.batch/plan.jsonl'
+run 'voxmend augment net/spaced.csv -o drawn -n 1 -r 8 && cat drawn/models.tsv'
 # Inputs are never outputs, and no two outputs are the same.
 mkdir clash
 cp in/cube.off clash/a.off
