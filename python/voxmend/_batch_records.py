@@ -46,6 +46,14 @@ class Item(NamedTuple):
         return None
 
     @property
+    def values(self) -> Optional[str]:
+        """What the numbers are that were made in place of set and clear voxels: of its grid, or of its variants where there is
+        none; None = they are voxels."""
+        has_grid = self.grid() is not None
+        made = self.end.get("voxelize" if has_grid else "augment", {})
+        return next((kind for kind in ("distance", "coverage", "labels", "color") if kind in made), None)
+
+    @property
     def variant_count(self) -> int:
         """How many variants were made of it (--augment)."""
         folder = self.plan["output"] + ".variants"

@@ -23,7 +23,7 @@ class GridDataset(Dataset):
     batch without grids (--no-grid --augment) the variants, each an item: its folder, or, of .npy, webdataset with `content`
     "files".
 
-    Numbers, such as distances and labels, are no voxels: they raise NumbersError, as in `voxmend.read`.
+    Numbers are no voxels: a batch of distances, shares, labels or colours raises NumbersError.
 
     Args:
         root: the folder.

@@ -158,21 +158,28 @@ class Grids(unittest.TestCase):
             self.assertEqual(len(data), sum('"status":"ok"' in line for line in file))
 
     def test_numbers_are_no_voxels(self):
-        """Of files in tars as of those of the batch: the same are taken, and the same refused."""
+        """Nor where all are 0 or 1, as labels of one body: the batch tells. Files in tars are as those of the batch."""
         meshes, out, tars = (os.path.join(self.folder.name, name) for name in ("in/ring/train", "numbers", "number-tars"))
-        for options, refused in (("--distance signed", True), ("--coverage 2 --scalar uint8", True), ("--coverage 2", True),
-                                 ("--labels part", False), ("", False)):
-            voxmend.batch.run(meshes, out, options="-r 12 --format npy " + options)
+        draw = '--no-grid --augment "-n 2 -r 12 --format npy%s"'
+        for options, values in (("--distance signed", "distance"), ("--coverage 2 --scalar uint8", "coverage"), ("--coverage 2", "coverage"),
+                                ("--labels part", "labels"), ("--color position", "color"), ("", None),
+                                (draw % " --coverage 2", "coverage"), (draw % "", None)):
+            voxmend.batch.run(meshes, out, options="-r 12 --format npy " + options if "-n" not in options else options)
             voxmend.batch.export(out, tars, to="webdataset", content="files")
-            folder, files = GridDataset(out), GridDataset(tars)
-            self.assertEqual(folder.names, files.names)
-            for i in range(len(folder)):
-                if refused:
-                    for data in folder, files:
-                        with self.assertRaises(voxmend.NumbersError):
-                            data[i]
-                else:
+            if values is None:
+                folder, files = GridDataset(out), GridDataset(tars)
+                self.assertEqual(folder.names, files.names)
+                for i in range(len(folder)):
                     self.assertTrue((folder[i][0] == files[i][0]).all())
+            else:
+                for root in out, tars:
+                    with self.assertRaisesRegex(voxmend.NumbersError, r"holds numbers \(%s\)" % values):
+                        GridDataset(root)
+            if values is not None and "-n" not in options:
+                for to in ("webdataset",) + ("zarr",) * (zarr is not None):
+                    with self.assertRaisesRegex(voxmend.NumbersError, r"holds numbers \(%s\)" % values):
+                        voxmend.batch.export(out, tars + to, to=to)
+                    self.assertFalse(os.path.exists(tars + to))
             remove(out)
             remove(tars)
 
