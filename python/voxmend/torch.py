@@ -15,7 +15,7 @@ import os
 import queue
 import threading
 import time
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Set, Tuple, Union
 
 import numpy
 import torch
@@ -26,6 +26,7 @@ from ._call_lock import CallLock, watch_forks
 from ._core import ffi
 from ._errors import ArgumentError, EmptyError
 from ._grid_dataset import GridDataset, order_by_groups
+from ._left_out import check_on_error, left_out
 from ._mesh import Mesh
 from ._mesh_sources import load
 from ._placement import place, split_named
@@ -78,12 +79,14 @@ class VoxelDataset(Dataset):
         cache: folder for repaired meshes, so that they are repaired once only; None = repaired in each process.
         memory: bytes of models to keep at once in each process, more or less.
         level: how far meshes are repaired.
+        on_error: "raise"; "skip": batches are smaller by the items of meshes that cannot be read or made, each told once as
+            VoxmendWarning. An item that is asked for by itself raises all the same.
         augment: the other options of `voxmend.Sampler`.
     """
 
     def __init__(self, root: Any, split: Optional[str] = None, resolution: int = 32, *, variants: int = 1,
                  packed: bool = False, seed: int = 0, cache: Any = None, memory: int = 1 << 30, level: str = "clean",
-                 **augment: Any):
+                 on_error: str = "raise", **augment: Any):
         self.root = os.fsdecode(_values.path(root))
         split = None if split is None else _values.word("dataset: split", split)
         for name, value, least in (("resolution", resolution, 1), ("variants", variants, 0), ("memory", memory, 0)):
@@ -100,6 +103,7 @@ class VoxelDataset(Dataset):
         self.resolution, self.variants, self.packed, self.level = resolution, variants, packed, level
         self.cache = None if cache is None else os.fspath(cache)
         self.memory = memory
+        self.on_error = check_on_error("dataset", on_error)
         self._options = dict(augment, resolution=resolution, seed=seed)
         self._epoch = torch.zeros(1, dtype=torch.int64).share_memory_()  # workers that run already see it too
         self._forget()
@@ -108,6 +112,7 @@ class VoxelDataset(Dataset):
     def _forget(self) -> None:
         self._sampler: Optional[Sampler] = None
         self._held: "collections.OrderedDict[int, int]" = collections.OrderedDict()  # model: bytes
+        self._broken: Set[int] = set()  # models that are left out
         self._call_lock = CallLock()
         watch_forks(self)
 
@@ -117,7 +122,7 @@ class VoxelDataset(Dataset):
 
     def __getstate__(self) -> Dict[str, Any]:
         state = dict(self.__dict__)
-        for name in ("_sampler", "_held", "_call_lock"):  # of this process
+        for name in ("_sampler", "_held", "_broken", "_call_lock"):  # of this process
             state.pop(name)
         return state
 
@@ -155,17 +160,23 @@ class VoxelDataset(Dataset):
             mesh.save(cached, keep_polygons=True)  # under another name until it is complete
         return mesh
 
-    def _need(self, models: Sequence[int]) -> Sampler:
+    def _put(self, sampler: Sampler, model: int) -> None:
+        mesh = self._repaired(self.files[model])
+        sampler.put(mesh, model, repair=False)
+        self._held[model] = 64 * len(mesh.indices) + 128 * len(mesh.vertices)
+
+    def _need(self, models: Sequence[int], on_error: str) -> Sampler:
         if self._sampler is None:
             self._sampler = Sampler(**self._options)
         wanted = set(models)
         for model in wanted:
             if model in self._held:
                 self._held.move_to_end(model)
-                continue
-            mesh = self._repaired(self.files[model])
-            self._sampler.put(mesh, model, repair=False)
-            self._held[model] = 64 * len(mesh.indices) + 128 * len(mesh.vertices)
+            elif on_error == "raise":
+                self._put(self._sampler, model)
+            elif model not in self._broken:
+                with left_out(self.files[model], self._broken, model):
+                    self._put(self._sampler, model)
         total = sum(self._held.values())
         for model in list(self._held):
             if total <= self.memory:
@@ -177,8 +188,11 @@ class VoxelDataset(Dataset):
 
     # ---- Items ----
 
-    def batch(self, items: Union[Sequence[int], Array], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
-        """Many items at once, made by all threads: voxels (n, 1, D, D, D), or packed, and labels (n,) int64."""
+    def batch(self, items: Union[Sequence[int], Array], epoch: Optional[int] = None,
+              on_error: Optional[str] = None) -> Tuple[torch.Tensor, torch.Tensor]:
+        """Many items at once, made by all threads: voxels (n, 1, D, D, D), or packed, and labels (n,) int64. `on_error` as for the
+        dataset; None = what that has."""
+        on_error = self.on_error if on_error is None else check_on_error("dataset", on_error)
         at = _values.array("dataset: items", items, "iu", "whole numbers").reshape(-1)
         if at.size and (at.min() < -len(self) or at.max() >= len(self)):
             raise IndexError("items are from 0 to %d" % (len(self) - 1))
@@ -187,17 +201,21 @@ class VoxelDataset(Dataset):
         models, indices = at % len(self.files), at // len(self.files)
         names = numpy.stack([models, numpy.full(len(at), self.epoch if epoch is None else epoch), indices], axis=1)
         with self._call_lock:
-            sampler = self._need(models.tolist())
+            sampler = self._need(models.tolist(), on_error)
+            made = numpy.array([model in self._held for model in models.tolist()], bool)
+            models, names = models[made], names[made]
             voxels = sampler.batch(names.reshape(-1, 3), dtype="bits" if self.packed else "float32")
         return torch.from_numpy(voxels), torch.from_numpy(numpy.asarray(self.labels, numpy.int64)[models])
 
     def __getitem__(self, item: int) -> Tuple[torch.Tensor, int]:
-        voxels, labels = self.batch([item])
+        voxels, labels = self.batch([item], on_error="raise")
         return voxels[0], int(labels[0])
 
     def __getitems__(self, items: Sequence[int]) -> List[Tuple[torch.Tensor, int]]:
         """What torch.utils.data.DataLoader asks for, if it knows of it, rather than for items one by one."""
         voxels, labels = self.batch(items)
+        if len(items) > 0 and len(labels) == 0:
+            raise EmptyError("dataset: none of the meshes of a batch can be read; IterableVoxelDataset passes over it")
         return list(zip(voxels, labels.tolist()))
 
 
@@ -224,6 +242,9 @@ class IterableVoxelDataset(IterableDataset):
         rank: number of this process among those that train together, from 0 on.
         ranks: how many they are. Each gets as many batches in an epoch, all of full size: what is left over, fewer than
             ranks * batch_size items, is left out.
+        on_error: "raise"; "skip": batches are smaller by the items that cannot be read or made, each mesh told once as
+            VoxmendWarning; one that would be empty is passed over, so that ranks may then differ by it. None: as the dataset
+            does.
 
     Attributes:
         waited: seconds for which the last iteration had to wait for batches.
@@ -233,7 +254,7 @@ class IterableVoxelDataset(IterableDataset):
 
     def __init__(self, dataset: Union[VoxelDataset, GridDataset], batch_size: int, *, epochs: Optional[int] = 1,
                  first_epoch: int = 0, shuffle: Union[bool, str] = True, seed: int = 0, drop_last: bool = False,
-                 prefetch: int = 2, rank: int = 0, ranks: int = 1):
+                 prefetch: int = 2, rank: int = 0, ranks: int = 1, on_error: Optional[str] = None):
         _values.whole("batches: batch_size", batch_size, 1)
         for name, value in (("epochs", epochs or 0), ("first_epoch", first_epoch), ("seed", seed), ("prefetch", prefetch)):
             _values.whole("batches: " + name, value, 0)
@@ -243,6 +264,7 @@ class IterableVoxelDataset(IterableDataset):
         self.dataset, self.batch_size, self.epochs, self.first_epoch = dataset, batch_size, epochs, first_epoch
         self.shuffle, self.seed, self.drop_last, self.prefetch = shuffle, seed, drop_last, prefetch
         self.rank, self.ranks = rank, ranks
+        self.on_error = None if on_error is None else check_on_error("batches", on_error)
         self.waited = 0.0
 
     def order(self, epoch: int) -> Array:
@@ -275,18 +297,30 @@ class IterableVoxelDataset(IterableDataset):
                 number += 1
             epoch += 1
 
+    def _made(self) -> Iterator[Tuple[torch.Tensor, torch.Tensor]]:
+        """The batches that have something in them."""
+        given: Dict[str, str] = {} if self.on_error is None else {"on_error": self.on_error}
+        passed = 0  # items since the last of them
+        for epoch, items in self._batches():
+            made = self.dataset.batch(items, epoch, **given)
+            passed = 0 if len(made[1]) else passed + len(items)
+            if len(made[1]):
+                yield made
+            elif passed > len(self.dataset):  # else it would go on without end
+                raise EmptyError("batches: nothing of the dataset can be read")
+
     def __iter__(self) -> Iterator[Tuple[torch.Tensor, torch.Tensor]]:
         self.waited = 0.0
         if self.prefetch < 1:
-            for epoch, items in self._batches():
-                start = time.perf_counter()
-                made = self.dataset.batch(items, epoch)
+            start = time.perf_counter()
+            for made in self._made():
                 self.waited += time.perf_counter() - start
                 yield made
+                start = time.perf_counter()
             return
         ready: "queue.Queue[Any]" = queue.Queue(self.prefetch)
         stop = ffi.new("int *")
-        worker = threading.Thread(target=self._make_ahead, args=(ready, stop, self._batches()), daemon=True)
+        worker = threading.Thread(target=self._make_ahead, args=(ready, stop), daemon=True)
         worker.start()
         try:
             while True:
@@ -306,13 +340,13 @@ class IterableVoxelDataset(IterableDataset):
                 except queue.Empty:
                     worker.join(0.01)
 
-    def _make_ahead(self, ready: Any, stop: Any, batches: Any) -> None:
+    def _make_ahead(self, ready: Any, stop: Any) -> None:
         try:
             with _core.stoppable(stop):
-                for epoch, items in batches:
+                for made in self._made():
                     if stop[0]:
                         return
-                    ready.put(("batch", self.dataset.batch(items, epoch)))
+                    ready.put(("batch", made))
             ready.put(("end", None))
         except BaseException as problem:  # goes on in the thread that asked
             ready.put(("error", problem))

@@ -305,6 +305,26 @@ class Grids(unittest.TestCase):
                 wanted = data.batch(numpy.concatenate([batches.order(0), batches.order(1)]))[0]
                 self.assertTrue((made == wanted).all())
 
+    def test_what_cannot_be_read(self):
+        out = os.path.join(self.folder.name, "holes")
+        shutil.copytree(self.out, out)
+        data = GridDataset(out)
+        self.assertEqual(len(data), 11)
+        os.remove(os.path.join(out, os.path.splitext(data.names[4])[0] + ".binvox"))
+        with self.assertRaises(OSError):
+            data.batch(range(11))
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            for _ in range(2):
+                voxels, labels = data.batch(range(11), on_error="skip")
+                kept = [i for i in range(11) if i != 4]
+                self.assertTrue((voxels == data.batch(kept)[0]).all() and (labels == data.batch(kept)[1]).all())
+            self.assertEqual(sum(len(labels) for _, labels in IterableVoxelDataset(data, 3, on_error="skip")), 10)
+        self.assertEqual(len(told), 1)
+        self.assertRegex(str(told[0].message), "%s.*; it is left out$" % os.path.splitext(data.names[4])[0])
+        with self.assertRaises(OSError):
+            list(IterableVoxelDataset(data, 3))
+
     def test_groups_stay_together(self):
         data = GridDataset(self.tars)
         self.assertGreater(len(set(data.groups.tolist())), 3)
