@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
@@ -12,15 +13,26 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 import numpy
 
 from ._batch_records import GRIDS, Item, Records
-from ._errors import EmptyError, FormatError, NumbersError
+from ._errors import EmptyError, FormatError, NumbersError, file_error
 from ._grid import read
 from ._packed import pack
 from ._types import Array
 
 
+def _need_folder(path: str) -> None:
+    """That in which it is to be written; its own name says what is wrong, not one that it has until then."""
+    folder = os.path.dirname(os.path.abspath(path))
+    if not os.path.isdir(folder):
+        number = errno.ENOTDIR if os.path.lexists(folder) else errno.ENOENT
+        raise file_error("%s: there is no folder %s to write it in; make that first" % (path, folder), number, os.fsencode(path), path)
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise file_error("%s: the folder %s may not be written to" % (path, folder), errno.EACCES, os.fsencode(path), path)
+
+
 @contextlib.contextmanager
 def published(path: str, is_folder: bool) -> Iterator[str]:
     """A name to write to, which becomes `path` at the end; nothing is left of it after a failure."""
+    _need_folder(path)
     aside = "%s.%d.tmp" % (path.rstrip("/"), os.getpid())
     try:
         if is_folder:
