@@ -39,13 +39,18 @@ __all__ = ["EXTENSIONS", "GridDataset", "IterableVoxelDataset", "VoxelDataset", 
 EXTENSIONS = (".off", ".obj", ".stl", ".ply", ".glb", ".gltf", ".3mf", ".dae", ".fbx", ".step", ".stp", ".iges", ".igs")
 
 
+def _is_hidden(name: str) -> bool:
+    """What is hidden, and what macOS adds to archives."""
+    return name.startswith(".") or name == "__MACOSX"
+
+
 def _meshes_below(folder: str, prefix: str = "", above: Tuple[Tuple[int, int], ...] = ()) -> Iterator[Tuple[str, str]]:
     """Names from the folder on, and paths, of what `voxmend batch` would take: not what is hidden, or a link to nothing or
     back."""
     state = os.stat(folder)
     here = (state.st_dev, state.st_ino)
     for entry in os.scandir(folder) if here not in above else ():
-        if entry.name.startswith("."):
+        if _is_hidden(entry.name):
             continue
         name = prefix + entry.name
         if os.path.isdir(entry.path) if entry.is_symlink() else entry.is_dir():

@@ -117,6 +117,11 @@ cp in/cube.off net/chair/train/chair_1.off
 cp in/torus.off net/chair/test/chair_2.off
 run 'voxmend batch net -o netted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" netted/.batch/plan.jsonl'
 run 'find net -name "*.off" >net.txt && voxmend batch net.txt -o enlisted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" enlisted/.batch/plan.jsonl'
+# A batch whose plan has other words for splits, as older ones had, goes on, with the words of today.
+mkdir netted/keep && cp netted/.batch/plan.jsonl netted/keep
+sed -i 's/"split":"test"/"split":"Testing"/' netted/.batch/plan.jsonl
+sed -i 's/"plan_sha256": "[0-9a-f]*"/"plan_sha256": "of another"/' netted/.batch/run.json
+run 'voxmend batch net -o netted -r 8 --pictures 0 && cmp netted/.batch/plan.jsonl netted/keep/plan.jsonl'
 # In a table blanks around cells do not count, but in quotes those of paths do; what it leaves open folders tell, and a column
 # that nobody knows is told.
 cp in/sphere.off "net/chair/test/ 3.off"
