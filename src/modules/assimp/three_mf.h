@@ -9,7 +9,8 @@
  * Looks at the models of an archive: whether objects lie in files of their own (the production extension),
  * which Assimp looks for in the main file, and whether an extension is required that makes another shape.
  *
- * @param unit becomes what the model says that its coordinates are in, in millimetres: 1 where it says nothing
+ * @param unit becomes what the model says that its coordinates are in, in millimetres: 1 where it says
+ * nothing
  * @return VXM_OK, also for what is damaged; VXM_ERROR_FORMAT; VXM_ERROR_MEMORY
  */
 vxm_status vxm_three_mf_check(double *unit, const vxm_reader_request *request, vxm_context *context,
