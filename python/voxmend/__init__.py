@@ -7,7 +7,7 @@
     grid.save("chair.binvox")
     parts = voxmend.labels(mesh, 64)                    # which part each voxel belongs to
     sampler = voxmend.Sampler(32, rotate="any", scale=0.3)
-    sampler.put(mesh.repair(separate=True))
+    sampler.put(mesh)                                   # repairs it, too
     batch = sampler.batch(16)                           # (16, 1, 32, 32, 32) float32
 
 doc/python.md of the sources has more.

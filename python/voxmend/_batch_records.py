@@ -9,13 +9,13 @@ from array import array
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ._errors import ArgumentError, FormatError
+from ._placement import place, split_as
 
 GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb", ".octree", ".bt", ".nii", ".nii.gz", ".vti", ".vtk", ".tif", ".h5",
          ".vox", ".schem", ".litematic", ".zarr")
 DONE = ("ok", "degraded", "duplicate")
 _HEAD, _SUM, _TAIL = b'{"sum":"', 16, b'",'
 _REST = len(_HEAD) + _SUM + len(_TAIL)
-_SPLITS = ("train", "test", "val", "valid", "validation")
 
 
 def is_whole(line: bytes) -> bool:
@@ -46,6 +46,14 @@ class Item(NamedTuple):
         return None
 
     @property
+    def values(self) -> Optional[str]:
+        """What the numbers are that were made in place of set and clear voxels: of its grid, or of its variants where there is
+        none; None = they are voxels."""
+        has_grid = self.grid() is not None
+        made = self.end.get("voxelize" if has_grid else "augment", {})
+        return next((kind for kind in ("distance", "coverage", "labels", "color") if kind in made), None)
+
+    @property
     def variant_count(self) -> int:
         """How many variants were made of it (--augment)."""
         folder = self.plan["output"] + ".variants"
@@ -59,14 +67,9 @@ class Item(NamedTuple):
 
 
 def _place(plan: Dict[str, Any]) -> Tuple[str, str]:
-    """Class and split: what the plan tells, or the folders as in ModelNet: chair/train/chair_0001.off."""
-    folders = plan["item"].split("/")[:-1]
-    kind, split = plan.get("class"), plan.get("split")
-    if split is None:
-        split = next((name for name in folders[:2] if name.lower() in _SPLITS), "")
-    if kind is None:
-        kind = next((name for name in folders if name.lower() not in _SPLITS), "")
-    return str(kind), str(split)
+    """Class and split: what the plan tells, or else the folders."""
+    kind, split = place(plan["item"])
+    return str(plan.get("class", kind)), split_as(str(plan.get("split", split)))
 
 
 class Records:

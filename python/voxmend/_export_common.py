@@ -3,24 +3,36 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
 import shutil
-from typing import Any, Dict, Iterator, List, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy
 
 from ._batch_records import GRIDS, Item, Records
-from ._errors import EmptyError, FormatError
+from ._errors import EmptyError, FormatError, NumbersError, file_error
 from ._grid import read
 from ._packed import pack
 from ._types import Array
 
 
+def _need_folder(path: str) -> None:
+    """That in which it is to be written; its own name says what is wrong, not one that it has until then."""
+    folder = os.path.dirname(os.path.abspath(path))
+    if not os.path.isdir(folder):
+        number = errno.ENOTDIR if os.path.lexists(folder) else errno.ENOENT
+        raise file_error("%s: there is no folder %s to write it in; make that first" % (path, folder), number, os.fsencode(path), path)
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise file_error("%s: the folder %s may not be written to" % (path, folder), errno.EACCES, os.fsencode(path), path)
+
+
 @contextlib.contextmanager
 def published(path: str, is_folder: bool) -> Iterator[str]:
     """A name to write to, which becomes `path` at the end; nothing is left of it after a failure."""
+    _need_folder(path)
     aside = "%s.%d.tmp" % (path.rstrip("/"), os.getpid())
     try:
         if is_folder:
@@ -71,9 +83,20 @@ def folder_content(records: Records, output: Dict[str, Any]) -> List[Tuple[str, 
     return files
 
 
+def need_voxels(values: Optional[str], folder: str, item: str) -> None:
+    """Refuses what holds other numbers, as `Item.values` tells them."""
+    if values is not None:
+        raise NumbersError("%s: of %s it holds numbers (%s), not set and clear voxels; voxmend.read_field reads them in the "
+                           "folder of the batch" % (folder, item, values))
+
+
 def with_grids(records: Records) -> List[int]:
     """Numbers of those of which there is a grid, in the order of the plan."""
-    out = [number for number, item in enumerate(records) if item.grid() is not None]
+    out = []
+    for number, item in enumerate(records):
+        if item.grid() is not None:
+            need_voxels(item.values, records.folder, item.item)
+            out.append(number)
     if not out and any(item.variant_count for item in records):
         raise EmptyError("%s: this batch has no grids (--no-grid), but variants, which GridDataset reads in its folder, and "
                          "'export --to webdataset --content files' takes" % records.folder)
@@ -83,15 +106,17 @@ def with_grids(records: Records) -> List[int]:
 
 
 def describe(item: Item) -> Dict[str, Any]:
-    """What is told beside a grid: the same for the same mesh and options, whenever they were run."""
+    """What is told beside a grid: the same for the same mesh and options, whenever they were run. `values` stands there where
+    it holds no voxels."""
     made = item.end.get("voxelize", {})
     grid = made.get("grid", {})
     shape = grid.get("dims")
     if shape is None and item.variant_count:  # of each of them
         shape = [item.end["augment"]["resolution"]] * 3
+    numbers = {} if item.values is None else {"values": item.values}
     return {"item": item.item, "class": item.kind, "split": item.split, "status": item.status,
             "shape": shape, "origin": grid.get("origin"), "voxel_size": grid.get("voxel_size"),
-            "voxels": made.get("voxels"), "hash": made.get("hash"), "mesh_sha256": item.end.get("sha256")}
+            "voxels": made.get("voxels"), "hash": made.get("hash"), "mesh_sha256": item.end.get("sha256"), **numbers}
 
 
 def packed_grid(records: Records, item: Item, verify: bool = True) -> Tuple[Array, Dict[str, Any]]:

@@ -12,6 +12,7 @@ from . import _values
 from ._batch_records import Records
 from ._errors import ArgumentError, EmptyError, UnavailableError
 from ._export_common import describe, json_line, packed_grid, published, with_grids
+from ._placement import split_as
 from ._types import Array
 
 CHUNK_BYTES = 4 << 20
@@ -75,9 +76,10 @@ def write(records: Records, path: str, *, split: Optional[str] = None, chunk_byt
           zarr_format: Optional[int] = None) -> Dict[str, Any]:
     """See `voxmend.batch.export`."""
     _values.whole("export: chunk_bytes", chunk_bytes, 1)
+    wanted = None if split is None else split_as(_values.word("export: split", split))
     zarr, everything = _zarr(), with_grids(records)
     classes = records.classes()
-    numbers = [number for number in everything if split is None or records[number].split == split]
+    numbers = [number for number in everything if wanted in (None, records[number].split)]
     if not numbers:
         raise EmptyError("%s: no mesh is of the split %r" % (records.folder, split))
     shape = _common_shape(records, numbers)

@@ -15,7 +15,7 @@ from ._grid import VoxelGrid
 from ._mesh import format_name
 from ._records import CoverageReport, DistanceReport, Label, LabelReport, VoxelizeReport
 from ._show import Shown
-from ._space import Placed, space
+from ._space import Placed, space, warn_of_stretch
 from ._types import Array, ArrayLike, Path, Size
 
 FieldReport = Union[DistanceReport, CoverageReport, LabelReport, VoxelizeReport, None]
@@ -223,6 +223,7 @@ class VoxelField(Placed, Shown):
         name = format_name("save", format)
         options.format = name
         _core.call(lib.vxm_field_write, self._pointer, _values.path(path), options, path=path)
+        warn_of_stretch(path, format, self.pitch)
 
 
 Field = VoxelField  # the name that it had

@@ -14,7 +14,7 @@ from ._errors import ArgumentError, KindError
 from ._mesh import Mesh, format_name
 from ._records import Comparison, VoxelizeReport
 from ._show import Shown
-from ._space import Placed, shown, shown_size, space
+from ._space import Placed, shown, shown_size, space, warn_of_stretch
 from ._types import Array, ArrayLike, Bools, Floats, Int64s, Path, Size, Uint8s, Uint64s
 
 if TYPE_CHECKING:
@@ -333,6 +333,7 @@ class VoxelGrid(Placed, Shown):
         name = format_name("save", format)
         options.format = name
         _core.call(lib.vxm_grid_write, self._pointer, _values.path(path), options, path=path)
+        warn_of_stretch(path, format, self.pitch)
 
 
 def _restore(kind: Type[VoxelGrid], place: Tuple[Any, ...], words: Uint64s, report: Any, warnings: List[str],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple, Union
 
 import numpy
 import torch
@@ -13,7 +13,9 @@ from . import _values
 from ._call_lock import CallLock, watch_forks
 from ._errors import EmptyError
 from ._grid_sources import open_source
+from ._left_out import check_on_error, left_out
 from ._packed import unpack as unpack_rows
+from ._placement import split_as
 from ._types import Array
 
 
@@ -22,11 +24,12 @@ class GridDataset(Dataset):
     batch without grids (--no-grid --augment) the variants, each an item: its folder, or, of .npy, webdataset with `content`
     "files".
 
-    Numbers, such as distances and labels, are no voxels: they raise NumbersError, as in `voxmend.read`.
+    Numbers are no voxels: a batch of distances, shares, labels or colours raises NumbersError.
 
     Args:
         root: the folder.
-        split: only those of this split, as the plan tells or the folders (chair/train/...); None = all.
+        split: only those of this split, as the plan tells or the folders (chair/train/...); None = all. The words that stand
+            for "train", "test" and "val", such as "Training", are one, there and here: doc/datasets.md.
         packed: items are (nx, ny, ceil(nz / 8)) uint8, see `unpack`, rather than (1, nx, ny, nz) float32.
 
     Attributes:
@@ -44,6 +47,7 @@ class GridDataset(Dataset):
         self.classes: List[str] = list(self._source.classes)
         self.packed = _values.flag("dataset: packed", packed)
         self.shape = self._source.shape
+        split = None if split is None else split_as(_values.word("dataset: split", split))
         if split is not None and split not in self._source.splits:
             raise EmptyError("%s: no grid is of the split %r; there are %s" %
                              (self.root, split, sorted(set(self._source.splits))))
@@ -56,6 +60,7 @@ class GridDataset(Dataset):
 
     def _forget(self) -> None:
         self._call_lock = CallLock()
+        self._broken: Set[int] = set()  # grids that are left out
         watch_forks(self)
 
     def _after_fork(self) -> None:
@@ -64,7 +69,7 @@ class GridDataset(Dataset):
 
     def __getstate__(self) -> Dict[str, Any]:
         state = dict(self.__dict__)
-        del state["_call_lock"]
+        del state["_call_lock"], state["_broken"]
         return state
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
@@ -78,17 +83,27 @@ class GridDataset(Dataset):
     def names(self) -> List[str]:
         return [self._source.names[i] for i in self._numbers]
 
-    def batch(self, items: Union[Sequence[int], Array], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
-        """Many at once: voxels (n, 1, nx, ny, nz), or packed, and labels (n,) int64. The epoch makes no difference."""
+    def batch(self, items: Union[Sequence[int], Array], epoch: Optional[int] = None,
+              on_error: str = "raise") -> Tuple[torch.Tensor, torch.Tensor]:
+        """Many at once: voxels (n, 1, nx, ny, nz), or packed, and labels (n,) int64. The epoch makes no difference. With `on_error`
+        "skip" they are fewer by those that cannot be read, each told once as VoxmendWarning."""
+        skips = check_on_error("dataset", on_error) == "skip"
         at = _values.array("dataset: items", items, "iu", "whole numbers").reshape(-1).astype(numpy.int64)
         if at.size and (at.min() < -len(self) or at.max() >= len(self)):
             raise IndexError("items are from 0 to %d" % (len(self) - 1))
         at = numpy.where(at < 0, at + len(self), at)
         nx, ny, nz = self.shape
         bits = numpy.empty((len(at), nx, ny, (nz + 7) // 8), numpy.uint8)
+        made = numpy.ones(len(at), bool)
         with self._call_lock:
             for i, number in enumerate(self._numbers[at].tolist()):
-                bits[i] = self._source.packed(number)
+                if not skips:
+                    bits[i] = self._source.packed(number)
+                elif number not in self._broken:
+                    with left_out(self._source.names[number], self._broken, number):
+                        bits[i] = self._source.packed(number)
+                made[i] = number not in self._broken or not skips
+        at, bits = at[made], bits[made] if not made.all() else bits
         voxels = bits if self.packed else unpack_rows(bits, nz)[:, None]
         return torch.from_numpy(voxels), torch.from_numpy(self.labels[at])
 

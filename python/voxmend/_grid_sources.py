@@ -16,11 +16,12 @@ import numpy
 
 from ._batch_records import Records
 from ._core import lib
-from ._errors import ArgumentError, EmptyError, FormatError, NumbersError, UnavailableError
-from ._export_common import describe, packed_grid, with_grids
+from ._errors import ArgumentError, EmptyError, FormatError, UnavailableError
+from ._export_common import describe, need_voxels, packed_grid, with_grids
 from ._field import VALUE_KINDS, VoxelField
 from ._grid import read
 from ._packed import pack
+from ._placement import split_as
 from ._types import Array
 
 
@@ -35,6 +36,7 @@ class _Told:
         self._known: Dict[str, str] = {}  # one string of each class and split
 
     def add(self, told: Dict[str, Any], where: str) -> None:
+        need_voxels(told.get("values"), where, told["item"])
         shape = tuple(told["shape"] or ())
         if self.shape is None:
             self.shape = shape
@@ -43,7 +45,8 @@ class _Told:
                                 (where, told["item"], shape, self.shape))
         self.names.append(told["item"])
         self.kinds.append(self._known.setdefault(told["class"], told["class"]))
-        self.splits.append(self._known.setdefault(told["split"], told["split"]))
+        split = split_as(told["split"])
+        self.splits.append(self._known.setdefault(split, split))
 
 
 class Source:
@@ -132,8 +135,7 @@ def _need_mask(array: Array, kind: Optional[str], where: str, name: str) -> Arra
         return array
     is_mask = array.ndim == 3 and kind != "colors"
     if not is_mask or not lib.vxm_field_is_mask(VoxelField(array, kind=kind or "numbers")._pointer):
-        raise NumbersError("%s: of %s it holds numbers (%s), not set and clear voxels; voxmend.read_field reads them in the "
-                           "folder of the batch" % (where, name, kind or array.dtype))
+        need_voxels(kind or str(array.dtype), where, name)
     return array
 
 

@@ -12,6 +12,7 @@ from ._core import ffi, lib
 from ._errors import ArgumentError, KindError
 from ._mesh import Mesh
 from ._mesh_sources import MeshLike, as_mesh
+from ._repair import repair as repair_mesh
 from ._types import Array, Floats, Uint32s
 from ._work import Rules
 
@@ -149,10 +150,18 @@ class Sampler:
         options.rotations = _core.pointer("double *", values)
         return values
 
-    def put(self, mesh: Optional[MeshLike], model: int = 0) -> None:
-        """Puts a mesh in as number `model`; None takes the model out. Repair it before:
-        `voxmend.repair(mesh, separate=True)`."""
+    def put(self, mesh: Optional[MeshLike], model: int = 0, *, repair: bool = True) -> None:
+        """Puts a mesh in, so that variants are made of it.
+
+        Args:
+            mesh: as for `voxmend.voxelize`; None takes the model out.
+            model: its number.
+            repair: repair the mesh first, as `voxmend.repair(mesh, separate=True)` does; what that gave is not changed by it.
+        """
+        repairs = _values.flag("sampler: repair", repair)
         own = None if mesh is None else as_mesh(mesh)
+        if own is not None and repairs:
+            own = repair_mesh(own, separate=True)
         number = _values.whole("sampler: model", model, 0, _UINT32_MAX)
         with self._call_lock:
             at = self._ready()
@@ -236,5 +245,5 @@ def _restore(kind: Type[Sampler], options: Dict[str, Any], meshes: Dict[int, Mes
     made = kind.__new__(kind)
     Sampler.__init__(made, **options)
     for model, mesh in meshes.items():
-        made.put(mesh, model)
+        made.put(mesh, model, repair=False)  # as it is held
     return made

@@ -2,6 +2,7 @@
 """Where voxels lie: boxes of cells, and what is said of them."""
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from typing import Any, List, Optional, Protocol, Tuple, Union
 
@@ -11,7 +12,7 @@ from . import _core, _values
 from ._core import ffi, lib
 from ._errors import ArgumentError, EmptyError, KindError, RangeError
 from ._mesh import Mesh
-from ._types import Array, ArrayLike, Floats, Int64s, Resolution, Shape, Size
+from ._types import Array, ArrayLike, Floats, Int64s, Path, Resolution, Shape, Size
 
 
 class HasPlace(Protocol):
@@ -259,3 +260,12 @@ class Place:
         _core.call(lib.vxm_space_fit, out, source._pointer, options)
         del kept  # until now the options point to it
         return out
+
+
+def warn_of_stretch(path: Path, format: Optional[str], pitch: Floats) -> None:
+    """Tells of voxels that are no cubes in a file of a program for which all are."""
+    name = os.fsdecode(_values.path(path))
+    kind = (format or os.path.splitext(name)[1].lstrip(".")).lower()
+    if kind in ("schem", "litematic", "vox") and (abs(pitch - pitch[0]) > 1e-6 * pitch[0]).any():
+        _core.warn(["%s: .%s shows all voxels as cubes, and these are %.4g x %.4g x %.4g: the model looks stretched in other "
+                    "programs" % (name, kind, *pitch)])

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #ifdef HAVE_SQLITE
@@ -156,9 +157,23 @@ static void finalize(database *d) {
   sqlite3_close(d->handle);
 }
 
+/** SQLite says no more than that it cannot open the file. */
+static bool need_folder(const char *path, batch_error *error) {
+  const char *slash = strrchr(path, '/');
+  char *folder = slash ? strndup(path, slash > path ? (size_t)(slash - path) : 1) : strdup(".");
+  struct stat info;
+  bool good = folder || batch_fail(error, "out of memory: free some");
+  if (good && (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode)))
+    good = batch_fail(error, "%s: there is no folder %s to write it in; make that first", path, folder);
+  free(folder);
+  return good;
+}
+
 bool batch_export_sqlite(const char *output, const char *path, int64_t *rows, batch_error *error) {
   database d = {0};
   char *temporary = NULL;
+  if (!need_folder(path, error))
+    return false;
   if (asprintf(&temporary, "%s.%ld.tmp", path, (long)getpid()) < 0)
     return batch_fail(error, "out of memory: free some");
   unlink(temporary);

@@ -31,7 +31,7 @@ bool batch_is_hidden(const char *part, size_t length);
 
 /**
  * Adds the rows of a list (.txt: a path a line) or table (.csv, .tsv: a line of column names first: path, and
- * any of id, class, split, options; others are left alone). Paths are relative to the folder of the list.
+ * any of id, class, split, options; others become a warning). Paths are relative to the folder of the list.
  */
 bool batch_table_read(batch_manifest *out, const char *path, batch_error *error);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/manifest.h"
+#include "batch/placement.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -160,50 +161,11 @@ static bool name_outputs(batch_manifest *manifest, batch_error *error) {
   return good || batch_fail(error, "out of memory for the list of meshes: free some");
 }
 
-/* ---- Classes and splits ---- */
+/* ---- All of them ---- */
 
-static bool is_split(const char *word, size_t length) {
-  static const char *const known[] = {"train", "test", "val", "valid", "validation"};
-  for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-    if (strlen(known[k]) == length && strncasecmp(word, known[k], length) == 0)
-      return true;
-  return false;
-}
-
-/** The folder before `from`, which is the beginning of a name in the path; the path if there is none. */
-static const char *folder_before(const char *path, const char *from) {
-  if (from > path)
-    from--;
-  while (from > path && from[-1] != '/')
-    from--;
-  return from;
-}
-
-/** Where classes and splits begin: at the class, where the last folder is a split, as in
- * data/ModelNet40/chair/train/1.off, which find lists; else at the first folder. */
-static const char *first_folder(const char *id) {
-  const char *slash = strrchr(id, '/');
-  if (!slash)
-    return id;
-  const char *last = folder_before(id, slash + 1);
-  return is_split(last, (size_t)(slash - last)) ? folder_before(id, last) : id;
-}
-
-/** Where a table tells neither, folders do as in ModelNet: chair/train/chair_0001.off; train/chair/1.off as
- * well. */
+/** Where a table tells neither. */
 static bool place(batch_item *item) {
-  const char *folder = first_folder(item->id), *slash;
-  bool good = true;
-  for (int depth = 0; good && (slash = strchr(folder, '/')); depth++) {
-    size_t length = (size_t)(slash - folder);
-    char **out = is_split(folder, length) ? (depth < 2 ? &item->split : NULL) : &item->kind;
-    if (out && !*out) {
-      *out = strndup(folder, length);
-      good = *out != NULL;
-    }
-    folder = slash + 1;
-  }
-  return good;
+  return batch_place(&item->kind, &item->split, item->id);
 }
 
 bool batch_manifest_finish(batch_manifest *manifest, batch_error *error) {

@@ -38,6 +38,7 @@ typedef struct batch_manifest {
   int64_t count, capacity;
   int64_t passed_over; /**< files in folders that are no meshes, by their names */
   char note[256];      /**< names the extensions that were passed over */
+  char warning[800];   /**< of a column of a table that is not understood; "" = there is none */
   bool has_left_out;   /**< the folder of the output is one of those looked through, or within one */
 } batch_manifest;
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Lists of paths, and tables as RFC 4180 has them (.csv), or with tabs (.tsv). */
 #include "batch/inputs.h"
+#include "batch/placement.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,17 +37,34 @@ static bool is_mark(const table *t, const char *buffer, size_t length) {
   return t->line == 1 && t->cell_count == 0 && length == 3 && memcmp(buffer, "\xef\xbb\xbf", 3) == 0;
 }
 
+static bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+/** The length without blanks at the end, behind what stood in quotes; the ends of lines of Windows count as
+ * such. */
+static size_t trimmed(const table *t, const char *buffer, size_t length, size_t quoted, int end) {
+  bool is_last = end != t->separator || !t->separator;
+  while (length > quoted &&
+         ((is_last && buffer[length - 1] == '\r') || (t->separator && is_blank(buffer[length - 1]))))
+    length--;
+  return length;
+}
+
 /**
- * Reads a cell into a buffer. Returns what ended it: the separator, '\n' or EOF; -2 if it is too long or a
- * quote is not closed.
+ * Reads a cell into a buffer, of a table without blanks around it. Returns what ended it: the separator, '\n'
+ * or EOF; -2 if it is too long or a quote is not closed.
  */
 static int read_cell(table *t, char *buffer, size_t *length) {
   bool quoted = false, was_quoted = false;
+  size_t in_quotes = 0;
   *length = 0;
   for (;;) {
     int c = getc(t->file);
     if (c == '\n')
       t->next_line++;
+    if (t->separator && *length == 0 && !was_quoted && c != t->separator && is_blank((char)c))
+      continue;
     if (c == '"' && t->separator && !quoted && *length == 0 && !was_quoted) {
       quoted = was_quoted = true;
       continue;
@@ -55,14 +73,17 @@ static int read_cell(table *t, char *buffer, size_t *length) {
       int after = getc(t->file);
       if (after != '"') {
         quoted = false;
+        in_quotes = *length;
         ungetc(after, t->file);
         continue;
       }
     }
-    if (c == EOF)
-      return quoted ? -2 : EOF;
-    if (!quoted && (c == '\n' || (t->separator && c == t->separator)))
+    if (c == EOF && quoted)
+      return -2;
+    if (c == EOF || (!quoted && (c == '\n' || (t->separator && c == t->separator)))) {
+      *length = trimmed(t, buffer, *length, in_quotes, c);
       return c;
+    }
     if (*length + 1 >= CELL_BYTES || c == '\0')
       return -2;
     buffer[(*length)++] = (char)c;
@@ -88,9 +109,6 @@ static int read_row(table *t, batch_error *error) {
       return -1;
     if (end == EOF && t->cell_count == 0 && length == 0)
       return 0;
-    if (end != t->separator || !t->separator)
-      while (length > 0 && buffer[length - 1] == '\r')
-        length--;
     char *cell = strndup(buffer, length);
     if (!cell) {
       batch_fail(error, "out of memory for %s: free some", t->name);
@@ -114,6 +132,33 @@ static bool is_empty(const table *t) {
          (t->cell_count == 1 && (!t->cells[0][0] || (!t->separator && t->cells[0][0] == '#')));
 }
 
+/** The name of a column, a class or a split: without blanks around it, in quotes either. */
+static char *bare(char *word) {
+  if (!word)
+    return NULL;
+  while (is_blank(*word))
+    word++;
+  for (size_t length = strlen(word); length > 0 && is_blank(word[length - 1]);)
+    word[--length] = '\0';
+  return *word ? word : NULL;
+}
+
+/** What its row and the folders of its id tell, or of its path, where the id names none. */
+static bool add_placed(batch_manifest *out, batch_item *item, const char *name, batch_error *error) {
+  const char *known = item->split ? batch_split_named(item->split, strlen(item->split)) : NULL;
+  char *kind = item->kind ? strdup(item->kind) : NULL;
+  char *split = item->split ? strdup(known ? known : item->split) : NULL;
+  bool good = !kind == !item->kind && !split == !item->split &&
+              batch_place(&kind, &split, strchr(item->id, '/') ? item->id : name);
+  item->kind = kind;
+  item->split = split;
+  good = good ? batch_manifest_add(out, item, error)
+              : batch_fail(error, "out of memory for the list of meshes: free some");
+  free(kind);
+  free(split);
+  return good;
+}
+
 static bool add_row(batch_manifest *out, const table *t, batch_error *error) {
   char *name = cell(t, PATH), *path = name;
   struct stat info;
@@ -124,29 +169,63 @@ static bool add_row(batch_manifest *out, const table *t, batch_error *error) {
   bool is_there = stat(path, &info) == 0; /* what is missing is told of when its turn comes */
   batch_item item = {.id = cell(t, ID) ? cell(t, ID) : name,
                      .path = path,
-                     .kind = cell(t, KIND),
-                     .split = cell(t, SPLIT),
+                     .kind = bare(cell(t, KIND)),
+                     .split = bare(cell(t, SPLIT)),
                      .options = cell(t, OPTIONS),
                      .bytes = is_there ? (uint64_t)info.st_size : 0,
                      .modified =
                          is_there ? (int64_t)info.st_mtim.tv_sec * 1000000000 + info.st_mtim.tv_nsec : 0};
   while (item.id[0] == '.' && item.id[1] == '/')
     item.id += 2;
-  bool good = batch_manifest_add(out, &item, error);
+  bool good = add_placed(out, &item, name, error);
   if (path != name)
     free(path);
   return good;
 }
 
-static bool read_columns(table *t, batch_error *error) {
+/* ---- The names of the columns ---- */
+
+static int column_named(const char *name) {
   static const char *const names[KNOWN] = {"path", "id", "class", "split", "options"};
-  int got = read_row(t, error);
+  for (int k = 0; k < KNOWN; k++)
+    if (strcasecmp(name, names[k]) == 0)
+      return k;
+  return -1;
+}
+
+/** Once, of the first table that has such; so many names as there is room for. */
+static void warn_of_columns(batch_manifest *out, const table *t, char *const *names, int count) {
+  char list[300] = "";
+  size_t used = 0;
+  int told = 0;
+  if (count == 0 || *out->warning)
+    return;
+  for (; told < count && used + strlen(names[told]) + 5 < sizeof list; told++)
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s'%s'", told ? ", " : "", names[told]);
+  snprintf(
+      out->warning, sizeof out->warning,
+      "%.300s: the column%s %s%s %s not used; the names that are known are path, id, class, split, options",
+      t->name, count == 1 ? "" : "s", list,
+      told == count ? ""
+      : told == 0   ? "with long names"
+                    : ", ...",
+      count == 1 ? "is" : "are");
+}
+
+static bool read_columns(batch_manifest *out, table *t, batch_error *error) {
+  char *others[COLUMNS_MAX];
+  int other_count = 0, got = read_row(t, error);
   if (got <= 0)
     return got == 0 ? batch_fail(error, "%s: the table is empty", t->name) : false;
-  for (int c = 0; c < t->cell_count; c++)
-    for (int k = 0; k < KNOWN; k++)
-      if (strcasecmp(t->cells[c], names[k]) == 0)
-        t->columns[k] = c;
+  for (int c = 0; c < t->cell_count; c++) {
+    char *name = bare(t->cells[c]);
+    int known = name ? column_named(name) : -1;
+    if (known >= 0)
+      t->columns[known] = c;
+    else if (name)
+      others[other_count++] = name;
+  }
+  warn_of_columns(out, t, others, other_count);
   return t->columns[PATH] >= 0 ||
          batch_fail(error,
                     "%s, line 1: no column is named 'path'; the others may be id, class, split, options",
@@ -154,7 +233,7 @@ static bool read_columns(table *t, batch_error *error) {
 }
 
 static bool read_table(batch_manifest *out, table *t, batch_error *error) {
-  if (t->separator && !read_columns(t, error))
+  if (t->separator && !read_columns(out, t, error))
     return false;
   int got;
   while ((got = read_row(t, error)) > 0)

@@ -74,6 +74,8 @@ json_t *augment_outcome_json(const augment_request *given, const augment_outcome
 void augment_request_json(json_t *report, const augment_request *given) {
   json_object_set_new(report, "format", json_string(given->format));
   json_object_set_new(report, "resolution", json_integer(given->sampler.resolution));
+  if (given->sampler.coverage > 0)
+    json_object_set_new(report, "coverage", json_integer(given->sampler.coverage));
   json_object_set_new(report, "seed", json_integer((json_int_t)given->sampler.seed));
   json_object_set_new(report, "epoch", json_integer(given->variant.epoch));
   json_object_set_new(report, "first", json_integer(given->first));

@@ -265,6 +265,8 @@ int augment_several(cli_run *cli, augment_request *given) {
   int status = !extensions || !s.models || !s.failures ? cli_fail_text(cli, "out of memory") : CLI_DONE;
   if (status == CLI_DONE && !batch_inputs_read(&s.manifest, &inputs, &error))
     status = fail(cli, &error);
+  if (status == CLI_DONE && *s.manifest.warning)
+    cli_warn(cli, "%s", s.manifest.warning);
   if (status == CLI_DONE)
     status = check(cli, given, &s.manifest);
   if (status == CLI_DONE)

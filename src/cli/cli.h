@@ -269,7 +269,8 @@ int cli_finish(cli_run *cli, json_t *report);
 
 /* ---- lattice.c ---- */
 
-/** Warns of a grid in a .bt file that other programs will see in a slightly other place. */
+/** Warns of a grid that other programs will see in a slightly other place (.bt), or stretched (.schem,
+ * .litematic, .vox). */
 void cli_warn_lattice(cli_run *cli, const char *path, const char *format, const vxm_space *space);
 
 /* ---- file_conflicts.c: which files are read and written ---- */

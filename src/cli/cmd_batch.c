@@ -162,7 +162,10 @@ static int run_inputs(cli_run *cli, const batch_request *given, batch_maker *mak
   allow_descriptors();
   if (!extensions || !batch_zygote_start(&zygote, batch_do_job, maker, &error))
     return fail(cli, &error);
-  if (batch_inputs_read(&manifest, &inputs, &error))
+  bool good = batch_inputs_read(&manifest, &inputs, &error);
+  if (good && *manifest.warning)
+    cli_warn(cli, "%s", manifest.warning);
+  if (good)
     status = run_batch(cli, maker, &zygote, &manifest);
   else
     status = fail(cli, &error);

@@ -28,11 +28,29 @@ typedef struct description {
   cli_found found;
 } description;
 
+/** Names of groups, parts and materials, with their faces; NULL where there are none, or no memory. */
+static json_t *tags_json(const vxm_mesh *mesh) {
+  int64_t count = vxm_mesh_tag_count(mesh), faces = vxm_mesh_face_count(mesh);
+  const uint32_t *tags = vxm_mesh_face_tags(mesh);
+  int64_t *sizes = count > 0 && tags ? calloc((size_t)count, sizeof *sizes) : NULL;
+  json_t *list = sizes ? json_array() : NULL;
+  for (int64_t f = 0; sizes && f < faces; f++)
+    sizes[tags[f]]++;
+  for (int64_t t = 0; list && t < count; t++)
+    json_array_append_new(list, json_pack("{s:o, s:I}", "name", cli_json_text(vxm_mesh_tag_name(mesh, t)),
+                                          "faces", (json_int_t)sizes[t]));
+  free(sizes);
+  return list;
+}
+
 static json_t *describe_json(const cli_run *cli, const description *d) {
   json_t *object = json_object();
   json_object_set_new(object, "file", cli_json_text(d->path));
   json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(d->mesh)));
   json_object_set_new(object, "verdict", cli_json_text(d->verdict));
+  json_t *tags = tags_json(d->mesh);
+  if (tags)
+    json_object_set_new(object, "tags", tags);
   cli_look_json(object, d->mesh);
   cli_census_json(object, &d->census);
   cli_intersections_json(object, d->found.intersections);

@@ -7,11 +7,9 @@
 /** Voxels of OctoMap begin at multiples of their size; less than this is no move. */
 static const double EVEN = 1e-6;
 
-void cli_warn_lattice(cli_run *cli, const char *path, const char *format, const vxm_space *space) {
+static void warn_of_move(cli_run *cli, const char *path, const vxm_space *space) {
   double move[3];
   bool moves = false;
-  if (strcmp(format, "bt") != 0)
-    return;
   for (int a = 0; a < 3; a++) {
     double first = space->origin[a] / space->voxel_size[a], by = nearbyint(first) - first;
     move[a] = fabs(by) > EVEN ? by * space->voxel_size[a] : 0;
@@ -22,4 +20,24 @@ void cli_warn_lattice(cli_run *cli, const char *path, const char *format, const 
              "%s: moved by %.4g %.4g %.4g onto OctoMap's lattice, whose voxels begin at multiples of their "
              "size; --bounds at such multiples with --voxel-size avoids it",
              cli_shown(path, "<stdout>"), move[0], move[1], move[2]);
+}
+
+/** What voxmend reads back lies as it was, by the metadata; nobody else knows these. */
+static void warn_of_stretch(cli_run *cli, const char *path, const char *format, const vxm_space *space) {
+  const double *size = space->voxel_size;
+  if (fabs(size[1] - size[0]) > EVEN * size[0] || fabs(size[2] - size[0]) > EVEN * size[0])
+    cli_warn(
+        cli,
+        "%s: .%s shows all voxels as cubes, and these are %.4g x %.4g x %.4g: the model looks stretched in "
+        "other programs; one number as --voxel-size makes cubes",
+        cli_shown(path, "<stdout>"), format, size[0], size[1], size[2]);
+}
+
+void cli_warn_lattice(cli_run *cli, const char *path, const char *format, const vxm_space *space) {
+  static const char *const cubes[] = {"schem", "litematic", "vox"};
+  if (strcmp(format, "bt") == 0)
+    warn_of_move(cli, path, space);
+  for (size_t c = 0; c < sizeof cubes / sizeof *cubes; c++)
+    if (strcmp(format, cubes[c]) == 0)
+      warn_of_stretch(cli, path, format, space);
 }

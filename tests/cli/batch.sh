@@ -163,6 +163,18 @@ ln -s nowhere.off hanging/b.off
 run 'voxmend batch "hanging/*.off" -o hung -r 8 --pictures 0; cut -f 1-4 hung/failures.tsv'
 run 'voxmend batch hanging/a.off hanging/b.off -o hung-named -r 8 --pictures 0 | grep result'
 run 'voxmend batch hanging -o hung-folder -r 8 --pictures 0 | grep -E "result|passed"'
+# A batch whose plan has other words for splits, as older ones had, goes on, with the words of today.
+mkdir netted/keep && cp netted/.batch/plan.jsonl netted/keep
+sed -i 's/"split":"test"/"split":"Testing"/' netted/.batch/plan.jsonl
+sed -i 's/"plan_sha256": "[0-9a-f]*"/"plan_sha256": "of another"/' netted/.batch/run.json
+run 'voxmend batch net -o netted -r 8 --pictures 0 && cmp netted/.batch/plan.jsonl netted/keep/plan.jsonl'
+# In a table blanks around cells do not count, but in quotes those of paths do; what it leaves open folders tell, and a column
+# that nobody knows is told.
+cp in/sphere.off "net/chair/test/ 3.off"
+printf 'Path, id ,"class ", split ,splits,note\nchair/train/chair_1.off, one, "seat ",Training ,x,\nchair/test/chair_2.off ,two,, \n \n"chair/test/ 3.off" , a/b,,\r\n' >net/spaced.csv
+run 'voxmend batch net/spaced.csv -o spaced -r 8 --pictures 0 -q --strict'
+run 'voxmend batch net/spaced.csv -o spaced -r 8 --pictures 0 && grep -oE "\"(item|class|split)\":\"[^\"]*\"" spaced/.batch/plan.jsonl'
+run 'voxmend augment net/spaced.csv -o drawn -n 1 -r 8 && cat drawn/models.tsv'
 # Inputs are never outputs, and no two outputs are the same.
 mkdir clash
 cp in/cube.off clash/a.off
@@ -207,6 +219,7 @@ run 'voxmend batch status data'
 run 'voxmend batch export grids --to sqlite'
 run 'voxmend batch export grids --to sqlite -o grids.db'
 run 'voxmend batch export grids --to sqlite -o grids.sqlite --shuffle 2'
+run 'voxmend batch export once --to sqlite -o gone/grids.sqlite'
 run 'voxmend batch export grids --to zarr -o arrays --max-bytes 0'
 run 'voxmend batch export grids --to zarr -o arrays --content all'
 run 'voxmend batch export grids --to sqlite -o grids.sqlite -r 8'

@@ -13,6 +13,13 @@ for format in schem litematic vox; do
 done
 run 'voxmend compare solid.vox solid.litematic --strict'
 run 'voxmend voxelize in/sphere.off -o turned.schem -r 12x6x6 --up x --blocks oak_planks -q && voxmend convert turned.schem -o turned.npy'
+# voxels that are no cubes look stretched in other programs, and come back as they are
+run 'voxmend voxelize in/sphere.off -o flat.npy -r 12x12x6 --bounds=-1,-1,-1,1,1,1 --labels part -q'
+for format in schem litematic vox; do
+  run "voxmend convert flat.npy -o flat.$format && voxmend convert flat.$format -o back.npy --force -q && cmp flat.npy.json back.npy.json"
+  run "voxmend voxelize in/sphere.off -o flat.$format -r 12x12x6 --bounds=-1,-1,-1,1,1,1 --force -q --strict"
+done
+rm flat.* back.*
 run 'voxmend view solid.vox -o solid.png -q'
 
 say "# labels and colours"

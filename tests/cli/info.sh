@@ -9,6 +9,9 @@ run 'voxmend info --list 1 in/cube.off in/degenerate.off'
 run 'voxmend info --json in/nonfinite.off'
 run 'voxmend info --json in/cube.off in/open_box.off'
 run 'voxmend info - <in/l_prism.off'
+# A group of two bodies, which materials name, and a face of neither.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\ng two\nusemtl left\nf 1 3 2\nf 1 2 4\nusemtl right\nf 2 3 4\ng bolt\nf 3 1 4\n' >named.obj
+run 'voxmend info --json named.obj | sed -n "/\"tags\"/,/]/p"; rm named.obj'
 # A tetrahedron with a corner on one edge, for one of its two sides: the face without area between them stays.
 printf 'OFF\n5 6 0\n0 0 0\n2 0 0\n0 2 0\n0 0 2\n1 0 0\n3 0 2 4\n3 4 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 4 1\n' >gap.off
 run 'voxmend info gap.off'

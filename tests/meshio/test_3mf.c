@@ -138,6 +138,31 @@ static bytes three_mf_with(bool wide, const char *head, const char *item, const 
 #define BEAMS "xmlns:b = \"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\""
 #define MATERIAL "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\""
 
+/** Coordinates are in millimetres, whatever the unit: as of STEP. What is placed is, too. */
+static void test_3mf_units(void **state) {
+  (void)state;
+  static const struct {
+    const char *unit;
+    double size;
+  } cases[] = {{"unit=\"micron\"", 0.001}, {"unit = 'millimeter'", 1}, {"unit=\"centimeter\"", 10},
+               {"unit=\"inch\"", 25.4},    {"unit=\"foot\"", 304.8},   {"unit=\"meter\"", 1000},
+               {"unit=\"parsec\"", 1},     {"xml:unit=\"inch\"", 1},   {"", 1}};
+  if (!has_module("assimp"))
+    skip();
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    char model[2000];
+    const char *before = strstr(three_mf_model, "unit="), *after = strstr(three_mf_model, "xmlns=");
+    snprintf(model, sizeof model, "%.*s%s %s", (int)(before - three_mf_model), three_mf_model, cases[c].unit,
+             after);
+    bytes b = three_mf_of(c % 2 == 1, model, NULL);
+    vxm_soup *soup = read_data(b.data, b.size, "a.3mf");
+    const double size = cases[c].size, bounds[6] = {0, 0, 0, 6 * size, 11 * size, size};
+    expect_body(soup, bounds, 0.5 * size * size * size, 1e-6 * size);
+    vxm_soup_destroy(soup);
+    bytes_free(&b);
+  }
+}
+
 static void test_3mf_extensions(void **state) {
   (void)state;
   static const struct {
@@ -214,8 +239,11 @@ static void test_in_process(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_3mf), cmocka_unit_test(test_3mf_extensions),
-                                     cmocka_unit_test(test_3mf_overlap), cmocka_unit_test(test_damage),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_3mf),
+                                     cmocka_unit_test(test_3mf_units),
+                                     cmocka_unit_test(test_3mf_extensions),
+                                     cmocka_unit_test(test_3mf_overlap),
+                                     cmocka_unit_test(test_damage),
                                      cmocka_unit_test(test_in_process)};
   leave_signals_alone();
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -187,6 +187,18 @@ class Batches(unittest.TestCase):
                     self.assertEqual(tar.read(6), b"\x93NUMPY")
                 self.assertLessEqual(os.path.getsize(os.path.join(self.at("long"), line["tar"])), 10240)
 
+    def test_exports_without_a_folder(self):
+        """Neither a name that is only used meanwhile, nor one that is none, is told."""
+        beside = self.at("a-file")
+        open(beside, "w").close()
+        for path, missing in ((self.at("gone/tars"), self.at("gone")), (beside + "/tars/", beside)):
+            with self.assertRaisesRegex(OSError, "^%s: there is no folder %s to write it in; make that first$" % (path, missing)):
+                voxmend.batch.export(self.out, path, to="webdataset")
+        with self.assertRaises(FileNotFoundError) as told:
+            voxmend.batch.export(self.out, self.at("gone/tars"), to="webdataset")
+        self.assertEqual(told.exception.filename, self.at("gone/tars"))
+        os.remove(beside)
+
     def test_tars_of_files(self):
         options = dict(to="webdataset", content="files", max_bytes=40000, shuffle=5)
         first = voxmend.batch.export(self.out, self.at("files1"), **options)

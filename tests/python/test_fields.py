@@ -8,6 +8,7 @@ import pickle
 import re
 import unittest
 import unittest.mock
+import warnings
 import zlib
 
 import numpy
@@ -132,6 +133,20 @@ class Fields(unittest.TestCase):
         with self.assertWarns(voxmend.VoxmendWarning):
             field = voxmend.read_field(self.path("w.npy"))
         self.assertEqual(len(field.warnings), 1)
+
+    def test_stretched(self):
+        """A file of a program for which voxels are cubes tells of those that are none, and has them all the same."""
+        for kind in "vox", "schem", "litematic", "npy":
+            for pitch, told in (((1, 1, 2), kind != "npy"), ((2, 2, 2), False)):
+                path = self.path("stretched." + kind)
+                for one in voxmend.VoxelGrid(numpy.ones((2, 3, 4), bool), pitch), voxmend.VoxelField(numpy.ones((2, 3, 4), "u1"), pitch,
+                                                                                                      kind="labels"):
+                    with warnings.catch_warnings(record=True) as found:
+                        warnings.simplefilter("always")
+                        one.save(path)
+                    self.assertEqual([str(line.message)[:len(path) + 40] for line in found],
+                                     [("%s: .%s shows all voxels as cubes, and these are 1 x 1 x 2" % (path, kind))[:len(path) + 40]] * told)
+                self.assertEqual(tuple(voxmend.read_field(path).pitch), pitch)
 
     def test_metadata(self):
         with open(self.path("u.nrrd"), "wb") as file:

@@ -7,6 +7,7 @@ import shutil
 import tempfile
 import threading
 import unittest
+import warnings
 
 import numpy
 import torch
@@ -146,6 +147,56 @@ class Datasets(unittest.TestCase):
             next(endless)
         endless.close()  # its thread ends
         self.assertLess(threading.active_count(), 3)
+
+    def test_what_cannot_be_read(self):
+        """It ends an epoch, or is left out with a warning; a link to nothing is no mesh."""
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in (("a/good.off", None), ("a/broken.off", "OFF\n3 nothing\n"), ("a/more.off", None),
+                               ("b/empty.off", "OFF\n0 0 0\n"), ("b/good.off", None)):
+                os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
+                with open(sample("torus")) as source, open(os.path.join(folder, name), "w") as file:
+                    file.write(source.read() if text is None else text)
+            os.symlink("nowhere.off", os.path.join(folder, "a", "link.off"))
+            os.makedirs(os.path.join(folder, "c"))
+            os.symlink("nowhere.off", os.path.join(folder, "c", "link.off"))
+            data = VoxelDataset(folder, None, 8, variants=2, on_error="skip")
+            self.assertEqual((data.classes, len(data)), (["a", "b"], 10))
+            good = [item for item in range(10) if "good" in data.files[item % 5] or "more" in data.files[item % 5]]
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                voxels, labels = data.batch(range(10))
+                self.assertTrue((voxels == data.batch(good)[0]).all())
+                self.assertEqual((len(good), labels.tolist()), (6, [data.labels[item % 5] for item in good]))
+                self.assertEqual(len(data.__getitems__([0, 1])), 1)
+                broken = [item for item in range(5) if item not in good]
+                self.assertEqual(len(data.batch(broken)[1]), 0)
+            lines = sorted(str(line.message) for line in told if "left out" in str(line.message))
+            self.assertEqual(len(lines), 2)  # one a mesh
+            for line, name in zip(lines, ("broken", "empty")):
+                self.assertRegex(line, "/%s.off.*; it is left out$" % name)
+            for wrong in lambda: data[broken[0]], lambda: data.batch(range(10), on_error="raise"), lambda: data.__getitems__(broken):
+                with self.assertRaises(ValueError):
+                    wrong()
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                for prefetch, workers in ((0, 0), (2, 0), (0, 2)):
+                    for size, batches in ((4, 3), (1, 6)):
+                        for which, options in ((data, {}), (VoxelDataset(folder, None, 8, variants=2), {"on_error": "skip"})):
+                            iterable = IterableVoxelDataset(which, size, prefetch=prefetch, **options)
+                            source = DataLoader(iterable, batch_size=None, num_workers=workers) if workers else iterable
+                            made = [len(labels) for _, labels in source]
+                            self.assertEqual((sum(made), len(made)), (6, batches))
+                os.remove(os.path.join(folder, "a", "good.off")), os.remove(os.path.join(folder, "a", "more.off"))
+                shutil.copy(os.path.join(folder, "b", "empty.off"), os.path.join(folder, "b", "good.off"))
+                none = VoxelDataset(folder, None, 8, on_error="skip")
+                with self.assertRaisesRegex(voxmend.EmptyError, "nothing of the dataset can be read"):
+                    list(IterableVoxelDataset(none, 2, epochs=None))
+            for wrong in lambda: IterableVoxelDataset(data, 4, on_error="raise"), lambda: IterableVoxelDataset(VoxelDataset(folder, None, 8), 4):
+                with self.assertRaises(ValueError):
+                    list(wrong())
+            for wrong in lambda: VoxelDataset(folder, None, 8, on_error="ignore"), lambda: IterableVoxelDataset(data, 4, on_error=1):
+                with self.assertRaises((ValueError, TypeError)):
+                    wrong()
 
     def test_errors_of_the_thread_come_through(self):
         data = self.dataset()

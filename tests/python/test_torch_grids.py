@@ -16,6 +16,7 @@ from torch.utils.data import DataLoader
 
 import voxmend
 import voxmend.batch
+from voxmend._placement import place
 from voxmend.torch import GridDataset, IterableVoxelDataset, VoxelDataset, unpack
 
 from batch_lib import SAMPLES, make_batch, remove
@@ -100,6 +101,54 @@ class Grids(unittest.TestCase):
             for root in roots[1:]:
                 remove(root)
 
+    def test_names_of_splits(self):
+        """The plan, what is read of it and folders of meshes agree about what is a split, a class, or neither."""
+        words = {"train": "train", "TRAIN": "train", "Training": "train", "test": "test", "Test": "test", "testing": "test",
+                 "val": "val", "Valid": "val", "validation": "val", "validate": "val", "trained": "", "extra": "", "validity": ""}
+        names = ["chair/%s/x.off" % word for word in words] + ["lamp/x.off", "group/desk/test/x.off", "bed/extra/more/train/x.off",
+                                                                "toy/a/val/b/x.off"]
+        meshes, out = os.path.join(self.folder.name, "words"), os.path.join(self.folder.name, "words-out")
+        for number, name in enumerate(names):
+            os.makedirs(os.path.dirname(os.path.join(meshes, name)))
+            with open(os.path.join(SAMPLES, "cube.off")) as source, open(os.path.join(meshes, name), "w") as file:
+                file.write(source.read() + "# %d\n" % number)
+        voxmend.batch.run(meshes, out, options="-r 4")
+        told = {item.item: (item.plan.get("class", ""), item.plan.get("split", "")) for item in voxmend.batch.Records(out)}
+        self.assertEqual({name: place(name) for name in names}, told)
+        self.assertEqual({word: told["chair/%s/x.off" % word] for word in words},
+                         {word: ("chair", split) for word, split in words.items()})
+        self.assertEqual([told[name] for name in names[-4:]], [("lamp", ""), ("desk", "test"), ("more", "train"), ("toy", "")])
+        for split, wanted in (("train", 4), ("TRAINING", 4), ("Test", 4), ("valid", 4), (None, 17)):
+            grids, models = GridDataset(out, split), VoxelDataset(meshes, split, 4)
+            self.assertEqual(len(grids), wanted)
+            self.assertEqual(sorted(grids.names), sorted(os.path.relpath(file, meshes) for file in models.files))
+            self.assertEqual(grids.classes, models.classes)
+            self.assertEqual(sorted(grids.labels), sorted(models.labels))
+        self.assertEqual(len(VoxelDataset(meshes, "extra", 4)), 1)  # any folder below the class
+        with self.assertRaisesRegex(voxmend.EmptyError, "'none'; there are .'test', 'train', 'val'.$"):
+            VoxelDataset(meshes, "none", 4)
+        older = os.path.join(out, ".batch", "plan.jsonl")  # of a batch that kept the words
+        with open(older) as file:
+            plan = file.read()
+        with open(older, "w") as file:
+            file.write(plan.replace('"split":"train"', '"split":"Train"'))
+        self.assertEqual(len(GridDataset(out, "train")), 4)
+
+    def test_splits_above_classes(self):
+        """train/chair/x.off, as torchvision's ImageFolder has it; folders may be links."""
+        meshes, out = os.path.join(self.folder.name, "above"), os.path.join(self.folder.name, "above-out")
+        for name in ("train/chair/a.off", "Train/chair/b.off", "train/lamp/a.off", "test/chair/a.off", "train/.hidden/a.off"):
+            os.makedirs(os.path.dirname(os.path.join(meshes, name)), exist_ok=True)
+            shutil.copy(os.path.join(SAMPLES, "cube.off"), os.path.join(meshes, name))
+        os.symlink("../train/lamp", os.path.join(meshes, "test", "bed"))
+        os.symlink("..", os.path.join(meshes, "test", "chair", "back"))
+        voxmend.batch.run(meshes, out, options="-r 4")
+        for split, wanted in (("train", ["chair", "chair", "lamp"]), ("test", ["bed", "chair"]),
+                              (None, ["bed", "chair", "chair", "chair", "lamp"])):
+            for data in GridDataset(out, split), VoxelDataset(meshes, split, 4):
+                self.assertEqual(data.classes, ["bed", "chair", "lamp"])
+                self.assertEqual(sorted(data.classes[label] for label in data.labels), wanted)
+
     def test_padded_and_not_cubic(self):
         out = os.path.join(self.folder.name, "flat")
         voxmend.batch.run(os.path.join(self.folder.name, "in", "prism"), out, options="-r 21x10x13 --format binvox")
@@ -109,21 +158,28 @@ class Grids(unittest.TestCase):
             self.assertEqual(len(data), sum('"status":"ok"' in line for line in file))
 
     def test_numbers_are_no_voxels(self):
-        """Of files in tars as of those of the batch: the same are taken, and the same refused."""
+        """Nor where all are 0 or 1, as labels of one body: the batch tells. Files in tars are as those of the batch."""
         meshes, out, tars = (os.path.join(self.folder.name, name) for name in ("in/ring/train", "numbers", "number-tars"))
-        for options, refused in (("--distance signed", True), ("--coverage 2 --scalar uint8", True), ("--coverage 2", True),
-                                 ("--labels part", False), ("", False)):
-            voxmend.batch.run(meshes, out, options="-r 12 --format npy " + options)
+        draw = '--no-grid --augment "-n 2 -r 12 --format npy%s"'
+        for options, values in (("--distance signed", "distance"), ("--coverage 2 --scalar uint8", "coverage"), ("--coverage 2", "coverage"),
+                                ("--labels part", "labels"), ("--color position", "color"), ("", None),
+                                (draw % " --coverage 2", "coverage"), (draw % "", None)):
+            voxmend.batch.run(meshes, out, options="-r 12 --format npy " + options if "-n" not in options else options)
             voxmend.batch.export(out, tars, to="webdataset", content="files")
-            folder, files = GridDataset(out), GridDataset(tars)
-            self.assertEqual(folder.names, files.names)
-            for i in range(len(folder)):
-                if refused:
-                    for data in folder, files:
-                        with self.assertRaises(voxmend.NumbersError):
-                            data[i]
-                else:
+            if values is None:
+                folder, files = GridDataset(out), GridDataset(tars)
+                self.assertEqual(folder.names, files.names)
+                for i in range(len(folder)):
                     self.assertTrue((folder[i][0] == files[i][0]).all())
+            else:
+                for root in out, tars:
+                    with self.assertRaisesRegex(voxmend.NumbersError, r"holds numbers \(%s\)" % values):
+                        GridDataset(root)
+            if values is not None and "-n" not in options:
+                for to in ("webdataset",) + ("zarr",) * (zarr is not None):
+                    with self.assertRaisesRegex(voxmend.NumbersError, r"holds numbers \(%s\)" % values):
+                        voxmend.batch.export(out, tars + to, to=to)
+                    self.assertFalse(os.path.exists(tars + to))
             remove(out)
             remove(tars)
 
@@ -248,6 +304,26 @@ class Grids(unittest.TestCase):
                 made = torch.cat([voxels for voxels, _ in batches])
                 wanted = data.batch(numpy.concatenate([batches.order(0), batches.order(1)]))[0]
                 self.assertTrue((made == wanted).all())
+
+    def test_what_cannot_be_read(self):
+        out = os.path.join(self.folder.name, "holes")
+        shutil.copytree(self.out, out)
+        data = GridDataset(out)
+        self.assertEqual(len(data), 11)
+        os.remove(os.path.join(out, os.path.splitext(data.names[4])[0] + ".binvox"))
+        with self.assertRaises(OSError):
+            data.batch(range(11))
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            for _ in range(2):
+                voxels, labels = data.batch(range(11), on_error="skip")
+                kept = [i for i in range(11) if i != 4]
+                self.assertTrue((voxels == data.batch(kept)[0]).all() and (labels == data.batch(kept)[1]).all())
+            self.assertEqual(sum(len(labels) for _, labels in IterableVoxelDataset(data, 3, on_error="skip")), 10)
+        self.assertEqual(len(told), 1)
+        self.assertRegex(str(told[0].message), "%s.*; it is left out$" % os.path.splitext(data.names[4])[0])
+        with self.assertRaises(OSError):
+            list(IterableVoxelDataset(data, 3))
 
     def test_groups_stay_together(self):
         data = GridDataset(self.tars)

@@ -2,6 +2,7 @@
 """The package as its users see it. SAMPLES is a folder of what samples/generate_samples makes."""
 import gc
 import os
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -164,6 +165,31 @@ class Grids(unittest.TestCase):
         sampler.put(voxmend.repair(both, separate=True))
         self.assertEqual(int(sampler.batch(1).sum()), 16 ** 3)
 
+    def test_samplers_repair(self):
+        """As voxelize does: of a box whose faces are drawn from both sides. What is repaired already stays as it is."""
+        corners, faces = cube()
+        both = voxmend.Mesh(corners, faces + [face[::-1] for face in faces])
+        repaired = both.repair(separate=True)
+        sampler = voxmend.Sampler(16, fill=True)
+        turned = voxmend.Sampler(16, rotate="any", displace=0.01)  # by the numbers of the vertices
+        made = []
+        for mesh, repairs in ((both, True), (repaired, True), (repaired, False)):
+            sampler.put(mesh, repair=repairs), turned.put(mesh, 1, repair=repairs)
+            self.assertEqual(int(sampler.batch(1).sum()), 16 ** 3)
+            made.append(turned.batch(3, model=1, dtype="bits"))
+        made.append(pickle.loads(pickle.dumps(turned)).batch(3, model=1, dtype="bits"))
+        for other in made[1:]:
+            self.assertTrue((other == made[0]).all())
+        sampler.put(both, repair=False)
+        self.assertEqual(int(sampler.batch(1).sum()), voxmend.voxelize(both, 16, repair=False).filled_count)
+        self.assertLess(int(sampler.batch(1).sum()), 16 ** 3)
+        self.assertTrue((pickle.loads(pickle.dumps(sampler)).batch(1) == sampler.batch(1)).all())
+        both.save("both.off")
+        sampler.put("both.off")
+        self.assertEqual(int(sampler.batch(1).sum()), 16 ** 3)
+        with self.assertRaises(voxmend.KindError):
+            sampler.put(both, repair="no")
+
     def test_spaces(self):
         mesh = voxmend.load(sample("torus"))
         self.assertTrue(numpy.allclose(mesh.voxelize(pitch=0.25).pitch, 0.25))
@@ -314,7 +340,7 @@ class Grids(unittest.TestCase):
 class Variants(unittest.TestCase):
     def make(self, **changed):
         sampler = voxmend.Sampler(**dict(ALL, **changed))
-        sampler.put(voxmend.load(sample("l_prism")))
+        sampler.put(voxmend.load(sample("l_prism")), repair=False)  # as tests/api/test_sampler.c
         return sampler
 
     def test_bits_of_the_library(self):
@@ -386,7 +412,7 @@ class Variants(unittest.TestCase):
         mesh = voxmend.load(sample("star_prism"))
         # The triangles are fans, which cover more than a star: as sheets, which would be kept.
         sampler = voxmend.Sampler(**dict(ALL, displace=0, thin="drop"))
-        sampler.put(mesh)
+        sampler.put(mesh, repair=False)
         for index in range(5):
             pose = sampler.pose(index)
             moved = mesh.vertices @ pose["transform"][:, :3].T + pose["transform"][:, 3]

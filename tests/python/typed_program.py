@@ -120,7 +120,8 @@ def engines() -> List[str]:
 
 def variants(mesh: voxmend.Mesh) -> Floats:
     sampler = voxmend.Sampler(16, rotate="any", scale=0.3, seed=3)
-    sampler.put(mesh.repair(separate=True))
+    sampler.put(mesh)
+    sampler.put(mesh.repair(separate=True), 1, repair=False)
     batch = sampler.batch(4)
     print(batch.shape, sampler.pose(0)["transform"].shape)
     return numpy.asarray(batch, numpy.float64)

@@ -72,6 +72,12 @@ static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, cons
   return status;
 }
 
+/** Brings a soup to millimetres. */
+static void apply_unit(vxm_soup *soup, double unit) {
+  for (size_t i = 0; unit != 1 && i < 3 * (size_t)soup->vertex_count; i++)
+    soup->positions[i] *= unit;
+}
+
 static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, vxm_error *error) {
   char extension[24], path[48];
   snprintf(extension, sizeof extension, ".%s", request->hint);
@@ -85,8 +91,9 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
     status = vxm_gltf_prepare(&gltf, request, soup->context, &soup->warnings, error);
   vxm_reader_request narrowed = *request;
   unsigned char *archive = NULL;
+  double unit = 1;
   if (strcmp(request->hint, "3mf") == 0) {
-    status = vxm_three_mf_check(request, soup->context, error);
+    status = vxm_three_mf_check(&unit, request, soup->context, error);
     if (status == VXM_OK)
       status = vxm_three_mf_narrow(&archive, request, soup->context, error);
     if (archive)
@@ -94,6 +101,8 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
   }
   if (status == VXM_OK)
     status = import(soup, &narrowed, path, is_gltf(request) ? &gltf : NULL, error);
+  if (status == VXM_OK)
+    apply_unit(soup, unit);
   vxm_free(soup->context, archive);
   vxm_gltf_free(&gltf, soup->context);
   return status;

@@ -21,6 +21,7 @@ typedef struct look {
   char path[PREFIX +
             8]; /**< the attribute that names another file, such as "p:path"; empty if there is none */
   bool has_path;
+  double unit;                        /**< in millimetres; 0 = not told */
   char required[URI];                 /**< an extension that is not read; empty if there is none */
   char text[CARRIED + VXM_ZIP_PIECE]; /**< the last piece, and the end of the one before it */
 } look;
@@ -94,7 +95,7 @@ static bool is_harmless(slice uri) {
 
 /** Prefixes of namespaces, and those that are required. */
 typedef struct head {
-  slice prefixes[NAMES], uris[NAMES], required;
+  slice prefixes[NAMES], uris[NAMES], required, unit;
   int count;
 } head;
 
@@ -116,6 +117,10 @@ static bool find_tag(slice *out, slice text) {
   return false;
 }
 
+static bool equals(slice text, const char *word) {
+  return text.size == strlen(word) && memcmp(text.at, word, text.size) == 0;
+}
+
 static void read_head(head *out, slice tag) {
   slice name, value;
   *out = (head){.count = 0};
@@ -123,8 +128,10 @@ static void read_head(head *out, slice tag) {
     if (starts_with(name, "xmlns:") && out->count < NAMES) {
       out->prefixes[out->count] = (slice){name.at + 6, name.size - 6};
       out->uris[out->count++] = value;
-    } else if (name.size == strlen("requiredextensions") && starts_with(name, "requiredextensions"))
+    } else if (equals(name, "requiredextensions"))
       out->required = value;
+    else if (equals(name, "unit"))
+      out->unit = value;
 }
 
 static void copy(char *out, size_t room, slice from, const char *behind) {
@@ -146,12 +153,26 @@ static bool is_required(const head *of, slice prefix) {
   return false;
 }
 
+/** In millimetres, as the core specification has them; what it does not know is left alone. */
+static double unit_of(slice word) {
+  static const struct {
+    const char *name;
+    double size;
+  } units[] = {{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10},
+               {"inch", 25.4},    {"foot", 304.8},   {"meter", 1000}};
+  for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+    if (equals(word, units[u].name))
+      return units[u].size;
+  return 1;
+}
+
 static void look_at_head(look *of, slice text) {
   slice tag;
   head found;
   if (!find_tag(&tag, text))
     return;
   read_head(&found, tag);
+  of->unit = unit_of(found.unit);
   for (int n = 0; n < found.count; n++) {
     if (is_production(found.uris[n]) && found.prefixes[n].size < PREFIX)
       copy(of->path, sizeof of->path, found.prefixes[n], ":path");
@@ -215,11 +236,13 @@ static bool is_model(const vxm_zip_member *member) {
   return member->name_size > length && memcmp(member->name + member->name_size - length, ending, length) == 0;
 }
 
-vxm_status vxm_three_mf_check(const vxm_reader_request *request, vxm_context *context, vxm_error *error) {
+vxm_status vxm_three_mf_check(double *unit, const vxm_reader_request *request, vxm_context *context,
+                              vxm_error *error) {
   vxm_zip zip;
   vxm_zip_member member;
   vxm_status status = VXM_OK;
   int models = 0;
+  *unit = 1;
   look *seen = vxm_alloc(context, 1, sizeof *seen, error);
   if (!seen)
     return VXM_ERROR_MEMORY;
@@ -230,6 +253,8 @@ vxm_status vxm_three_mf_check(const vxm_reader_request *request, vxm_context *co
     memset(seen, 0, offsetof(look, text)); /* there may be many files of no size */
     bool is_seen = vxm_zip_unpack(&zip, &member, context, look_at, seen);
     status = judge(seen, request->name, error);
+    if (seen->unit > 0)
+      *unit = seen->unit;
     if (!is_seen && ++models > 1) /* only the production extension has more than one */
       status = refuse_files(request->name, error);
   }

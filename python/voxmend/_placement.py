@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Classes and splits of meshes, as the names of their folders tell them. src/batch/placement.c has the same rules."""
+from __future__ import annotations
+
+from typing import Optional, Tuple
+
+_SPLITS = {"train": "train", "training": "train", "test": "test", "testing": "test",
+           "val": "val", "valid": "val", "validation": "val", "validate": "val"}
+
+
+def split_named(word: str) -> Optional[str]:
+    """"train", "test" or "val" for the words that stand for one of them, in any case; None for others."""
+    return _SPLITS.get(word.lower())
+
+
+def split_as(word: str) -> str:
+    """The name of a split: other words are names of their own."""
+    return split_named(word) or word
+
+
+def place(name: str) -> Tuple[str, str]:
+    """Class and split, each "" if it is not told: chair/train/chair_0001.off as in ModelNet, train/chair/1.off as well."""
+    folders = name.split("/")[:-1]
+    if folders and split_named(folders[-1]):
+        folders = folders[-2:]  # also data/ModelNet40/chair/train/1.off
+    kind = next((folder for folder in folders if not split_named(folder) and folder not in ("", ".", "..")), "")
+    split = next((folder for folder in folders[:2] if split_named(folder)), "")
+    return kind, split_as(split)
