@@ -103,7 +103,7 @@ static void solids_stay_in_any_direction(void **state) {
     vxm_rng rng = {~seed};
     double angle[2] = {7 * vxm_rng_unit(&rng), 7 * vxm_rng_unit(&rng)};
     double c = cos(angle[0]), s = sin(angle[0]), d = cos(angle[1]), t = sin(angle[1]);
-    manner how = {.turn = {{c, -s * d, s * t}, {s, c * d, -c * t}, {0, t, d}}};
+    manner how = {.turn = {{c, -s * d, s * t}, {s, c * d, -c * t}, {0, t, d}}, .unit = 1};
     assert_union(*state, seed, &how, seed % 3 == 0);
   }
 }

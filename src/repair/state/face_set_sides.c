@@ -100,11 +100,12 @@ static void find_middle(const asking *a, size_t face, double middle[3]) {
       best = c;
     }
   }
-  for (int x = 0; x < 3; x++)
-    middle[x] = (vxm_position(a->state->soup, corner[0])[x] * a->scale +
-                 vxm_position(a->state->soup, corner[best - 1])[x] * a->scale +
-                 vxm_position(a->state->soup, corner[best])[x] * a->scale) /
-                3;
+  for (int x = 0; x < 3; x++) {
+    double p = vxm_position(a->state->soup, corner[0])[x] * a->scale;
+    double q = vxm_position(a->state->soup, corner[best - 1])[x] * a->scale;
+    double r = vxm_position(a->state->soup, corner[best])[x] * a->scale;
+    middle[x] = vxm_between_three((p + q + r) / 3, p, q, r);
+  }
 }
 
 /** Of the scaled coordinates of a set: nearer than this a face is taken to lie at the origin of a ray. */
