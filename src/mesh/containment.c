@@ -264,9 +264,10 @@ static bool take_sample(const builder *b, uint32_t component, int number, sample
       continue;
     const double *p = vxm_position(b->soup, corner[0]), *q = vxm_position(b->soup, corner[1]);
     const double *r = vxm_position(b->soup, corner[count - 1]);
-    for (int a = 0; a < 3; a++)
-      out->point[a] = weights[number] * (p[a] * b->frame.scale) +
-                      (1 - weights[number]) / 2 * (q[a] * b->frame.scale + r[a] * b->frame.scale);
+    for (int a = 0; a < 3; a++) {
+      double x = p[a] * b->frame.scale, y = q[a] * b->frame.scale, z = r[a] * b->frame.scale;
+      out->point[a] = vxm_between_three(weights[number] * x + (1 - weights[number]) / 2 * (y + z), x, y, z);
+    }
     out->axis = axis_across(b, corner, count);
     return true;
   }

@@ -87,6 +87,12 @@ static inline double vxm_polygon_cone(vxm_vec3 corner, vxm_vec3 area) {
   return vxm_vec3_dot(corner, area) / 3.0;
 }
 
+/** A mean of three numbers, which rounding may have put beyond them: never so. A point of a triangle that lay
+ * outside the box of its mesh by that would see none of it. */
+static inline double vxm_between_three(double mean, double a, double b, double c) {
+  return fmin(fmax(mean, fmin(a, fmin(b, c))), fmax(a, fmax(b, c)));
+}
+
 /** Whether a point comes before another one in space: by x, then y, then z. */
 static inline bool vxm_lies_before(const double *p, const double *q) {
   for (int a = 0; a < 3; a++)

@@ -431,7 +431,8 @@ typedef struct vxm_color_options {
   const vxm_mesh *mesh; /**< with VXM_COLOR_MESH: read with its colours (vxm_mesh_read_options), not repaired,
                            and in the same coordinates as the model's, which may be its repair */
   bool average; /**< with VXM_COLOR_MESH: the mean over the surface within a voxel, by area and in linear
-                   light, where there is any; else the colour of the nearest point to its centre */
+                   light, where there is any; else the colour of the nearest point to its centre.
+                   Of two walls upon each other that of the voxel's own body counts */
   const char *blocks;      /**< of a file: as in vxm_grid_write_options */
   int up;                  /**< of a file: as in vxm_grid_write_options */
   const vxm_field *volume; /**< with VXM_COLOR_VOLUME: numbers or colours, in the same coordinates as the

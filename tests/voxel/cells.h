@@ -46,15 +46,16 @@ typedef struct manner {
   bool triangles; /**< each square is cut in two, now this way and now that, so that faces that lie on each
                      other need not be equal */
   double turn[3][3];
+  double unit; /**< what cells measure: coordinates that are no whole numbers are rounded */
 } manner;
 
-static const manner squares = {.turn = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+static const manner squares = {.turn = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .unit = 1};
 
 static inline void add_corner(vxm_soup *soup, const manner *how, const int p[3]) {
   double q[3];
   for (int a = 0; a < 3; a++)
     q[a] = how->turn[a][0] * p[0] + how->turn[a][1] * p[1] + how->turn[a][2] * p[2];
-  add_vertex(soup, q[0], q[1], q[2]);
+  add_vertex(soup, how->unit * q[0], how->unit * q[1], how->unit * q[2]);
 }
 
 static inline void add_square(vxm_soup *soup, const manner *how, const int corner[3], int axis, bool outward,
@@ -97,7 +98,7 @@ static inline int cell_of_point(const manner *how, const double p[3]) {
   int at[3];
   bool outside = false;
   for (int a = 0; a < 3; a++) { /* the inverse of a rotation is its transpose */
-    double q = how->turn[0][a] * p[0] + how->turn[1][a] * p[1] + how->turn[2][a] * p[2];
+    double q = (how->turn[0][a] * p[0] + how->turn[1][a] * p[1] + how->turn[2][a] * p[2]) / how->unit;
     at[a] = (int)floor(q);
     if (q - at[a] < 0.05 || q - at[a] > 0.95)
       return -1;
@@ -110,11 +111,11 @@ static inline int cell_of_point(const manner *how, const double p[3]) {
 static inline int count_wrong(const vxm_soup *soup, const manner *how, const bool wanted[CELLS]) {
   enum { FINE = 28 };
   vxm_space_options place = VXM_SPACE_OPTIONS_INIT;
-  vxm_space space = {.dims = {SIDE, SIDE, SIDE}, .voxel_size = {1, 1, 1}};
+  vxm_space space = {.dims = {SIDE, SIDE, SIDE}, .voxel_size = {how->unit, how->unit, how->unit}};
   for (int a = 0; a < 3 && how != &squares && !how->triangles; a++) {
     space.dims[a] = FINE;
-    space.voxel_size[a] = 0.75;
-    space.origin[a] = -FINE / 2 * 0.75 + 0.01;
+    space.voxel_size[a] = 0.75 * how->unit;
+    space.origin[a] = (-FINE / 2 * 0.75 + 0.01) * how->unit;
   }
   place.like = &space;
   vxm_grid *grid;

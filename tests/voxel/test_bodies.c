@@ -103,9 +103,66 @@ static void solids_stay_in_any_direction(void **state) {
     vxm_rng rng = {~seed};
     double angle[2] = {7 * vxm_rng_unit(&rng), 7 * vxm_rng_unit(&rng)};
     double c = cos(angle[0]), s = sin(angle[0]), d = cos(angle[1]), t = sin(angle[1]);
-    manner how = {.turn = {{c, -s * d, s * t}, {s, c * d, -c * t}, {0, t, d}}};
+    manner how = {.turn = {{c, -s * d, s * t}, {s, c * d, -c * t}, {0, t, d}}, .unit = 1};
     assert_union(*state, seed, &how, seed % 3 == 0);
   }
+}
+
+/* ---- Boxes of six large faces ---- */
+
+/** Adds a box as it is: its faces lie on those of others in part, and share corners with some. */
+static void add_whole_box(vxm_soup *soup, const int low[3], const int high[3], bool triangles, vxm_rng *rng) {
+  for (int side = 0; side < 6; side++) {
+    int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    uint32_t first = (uint32_t)soup->vertex_count, face[4];
+    for (int c = 0; c < 4; c++) {
+      int p[3];
+      p[axis] = side % 2 ? high[axis] : low[axis];
+      p[u] = c == 1 || c == 2 ? high[u] : low[u];
+      p[v] = c >= 2 ? high[v] : low[v];
+      add_vertex(soup, p[0], p[1], p[2]);
+      face[side % 2 ? c : 3 - c] = first + (uint32_t)c;
+    }
+    size_t cut = (size_t)vxm_rng_below(rng, 2);
+    if (!triangles) {
+      add_face(soup, face, 4);
+      continue;
+    }
+    add_triangle(soup, face[cut], face[cut + 1], face[cut + 2]);
+    add_triangle(soup, face[cut], face[cut + 2], face[(cut + 3) % 4]);
+  }
+}
+
+/** Boxes in so few cells that most have corners, edges and parts of faces in common, all outward. */
+static void assert_boxes(vxm_context *context, uint64_t seed) {
+  enum { BOXES_MAX = 8 };
+  vxm_rng rng = {seed};
+  bool wanted[CELLS] = {false}, triangles = vxm_rng_below(&rng, 2) == 0;
+  uint64_t width = 2 + vxm_rng_below(&rng, 4), count = 2 + vxm_rng_below(&rng, BOXES_MAX - 1);
+  vxm_soup *soup = new_soup(context), *prepared;
+  for (uint64_t i = 0; i < count; i++) {
+    int low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+      low[a] = (int)vxm_rng_below(&rng, width);
+      high[a] = low[a] + 1 + (int)vxm_rng_below(&rng, width - (uint64_t)low[a]);
+    }
+    add_whole_box(soup, low, high, triangles, &rng);
+    for (int z = low[2]; z < high[2]; z++)
+      for (int y = low[1]; y < high[1]; y++)
+        for (int x = low[0]; x < high[0]; x++)
+          wanted[cell_at(x, y, z)] = true;
+  }
+  assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
+  int wrong = count_wrong(prepared, &squares, wanted);
+  if (wrong > 0)
+    fail_msg("seed %llu: %d voxels are wrong", (unsigned long long)seed, wrong);
+  vxm_soup_destroy(prepared);
+  vxm_soup_destroy(soup);
+}
+
+static void boxes_stay(void **state) {
+  for (uint64_t seed = 1; seed <= rounds_of(2000); seed++)
+    assert_boxes(*state, seed);
 }
 
 /* ---- Many bodies ---- */
@@ -229,6 +286,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(solids_stay),
                                      cmocka_unit_test(solids_stay_in_triangles),
                                      cmocka_unit_test(solids_stay_in_any_direction),
+                                     cmocka_unit_test(boxes_stay),
                                      cmocka_unit_test(bodies_with_holes_touch),
                                      cmocka_unit_test(patches_stay_together),
                                      cmocka_unit_test(rays_ask_whether_to_go_on)};

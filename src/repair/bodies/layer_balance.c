@@ -127,6 +127,13 @@ static double fit_of(const balancing *b, size_t patch, int64_t front) {
   return sides > 0 ? gain / sides : 0;
 }
 
+/** Whether a layer lies on the other side of 0 than what the rays of its patch have met. That is empty, so
+ * that every closed patch would suit it, and would be turned inside out. */
+static bool is_beyond_zero(const balancing *b, size_t patch, int64_t front, int64_t surplus) {
+  int64_t least = b->reach[2 * patch], most = b->reach[2 * patch + 1];
+  return least + most >= 0 ? front < 0 && front < least : front + surplus > 0 && front + surplus > most;
+}
+
 /** The winding number before a patch that suits its border best: of several the one nearest to its rays. */
 static double best_fit(const balancing *b, size_t patch, int64_t *front) {
   int64_t surplus = vxm_layers_surplus(b->layers, patch);
@@ -134,6 +141,8 @@ static double best_fit(const balancing *b, size_t patch, int64_t *front) {
   double best = -3;
   for (int64_t outside = 0; outside <= surplus; outside++)
     for (int64_t f = least - outside; f + surplus <= most + outside; f++) {
+      if (is_beyond_zero(b, patch, f, surplus))
+        continue;
       double fit = has_levels(b, f, surplus) ? fit_of(b, patch, f) : -2;
       if (fit > best) {
         best = fit;

@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-enum { SAMPLES = 5 };
+enum { SAMPLES = 5, MORE_FACES = 16 /**< of a patch of which those do not tell enough */ };
 
 static bool is_asked(const vxm_layers *l, size_t face) {
   return l->asked[l->groups->of_face[face]] && vxm_layers_stands(l, face);
@@ -88,11 +88,71 @@ static void take_answers(vxm_layers *l, const vxm_face_set_side *sets, size_t co
   }
 }
 
-static int by_set_then_face(const void *a, const void *b) {
+static int by_set_then_place(const void *a, const void *b) {
   const vxm_face_set_side *s = a, *t = b;
   if (s->set != t->set)
     return s->set < t->set ? -1 : 1;
-  return s->face < t->face ? -1 : s->face > t->face;
+  if (s->face != t->face)
+    return s->face < t->face ? -1 : 1;
+  return s->place < t->place ? -1 : s->place > t->place;
+}
+
+/** Sorts answers by their patches, and takes them; whether all patches are known then. */
+static bool take_all(vxm_layers *l, vxm_face_set_side *sets, size_t count, int32_t *reach) {
+  bool all = true;
+  qsort(sets, count, sizeof *sets, by_set_then_place);
+  for (size_t i = 0, j; i < count; i = j) {
+    for (j = i; j < count && sets[j].set == sets[i].set;)
+      j++;
+    take_answers(l, sets + i, j - i, reach);
+    all = all && (l->known[sets[i].set] || is_sheet(l, sets[i].set));
+  }
+  return all;
+}
+
+/** Lists places on faces of patches that are not known; without a list only counts them. @param size as
+ * list_samples has left it */
+static size_t list_more(vxm_layers *l, vxm_face_set_side *sets, size_t *size) {
+  size_t faces = l->state->soup->face_count, count = 0, *seen = size + faces;
+  for (size_t f = 0; f < faces; f++)
+    seen[f] = 0;
+  for (size_t f = 0; f < faces; f++) {
+    size_t root = is_asked(l, f) ? vxm_set_of(l->patch, f) : f;
+    if (!is_asked(l, f) || l->known[root])
+      continue;
+    if (seen[root]++ % (size[root] / MORE_FACES + 1) != 0)
+      continue;
+    for (int place = 0; place < VXM_FACE_PLACES; place++, count++)
+      if (sets)
+        sets[count] = (vxm_face_set_side){.face = f, .set = root, .place = place};
+  }
+  return count;
+}
+
+/** Leaves only the answers that have sides which differ by the copies of a face: those of places where no
+ * other face lies. */
+static size_t keep_fitting(const vxm_layers *l, vxm_face_set_side *sets, size_t count) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; i++)
+    if (sets[i].back - sets[i].front == vxm_layers_surplus(l, sets[i].set))
+      sets[kept++] = sets[i];
+  return kept;
+}
+
+/** Asks patches that are not known elsewhere: other faces may lie on theirs in part. */
+static vxm_status ask_again(vxm_layers *l, const uint8_t *bound, size_t *size, int32_t *reach,
+                            vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t count = list_more(l, NULL, size);
+  vxm_face_set_side *sets = vxm_repair_state_scratch(l->state, count, sizeof *sets, &status, error);
+  if (sets) {
+    list_more(l, sets, size);
+    status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, true, error);
+  }
+  if (status == VXM_OK)
+    take_all(l, sets, keep_fitting(l, sets, count), reach);
+  vxm_free(l->state->context, sets);
+  return status;
 }
 
 static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *sets, size_t *size,
@@ -101,17 +161,10 @@ static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *
   vxm_status status = vxm_ask(l->state->context, error);
   if (status == VXM_OK)
     status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, true, error);
-  if (status != VXM_OK)
+  if (status != VXM_OK || take_all(l, sets, count, reach))
     return status;
-  qsort(sets, count, sizeof *sets, by_set_then_face);
-  bool all = true;
-  for (size_t i = 0, j; i < count; i = j) {
-    for (j = i; j < count && sets[j].set == sets[i].set;)
-      j++;
-    take_answers(l, sets + i, j - i, reach);
-    all = all && (l->known[sets[i].set] || is_sheet(l, sets[i].set));
-  }
-  return all ? VXM_OK : vxm_layers_balance(l, reach, error);
+  status = ask_again(l, bound, size, reach, error);
+  return status == VXM_OK ? vxm_layers_balance(l, reach, error) : status;
 }
 
 vxm_status vxm_layers_find(vxm_layers *layers, vxm_error *error) {

@@ -86,12 +86,15 @@ static void list_surroundings(asking *a, bool open) {
   }
 }
 
-/** The middle of the largest triangle from the first corner: polygons need not be plane, and rays meet these.
- */
-static void find_middle(const asking *a, size_t face, double middle[3]) {
+/** Of the corner that a place is near. */
+static const double NEAR = 0.8;
+
+/** A point of a triangle from the first corner: polygons need not be plane, and rays meet these. The middle
+ * of the largest one; other places are near its corners, and near those of the next. */
+static void find_point(const asking *a, size_t face, int place, double point[3]) {
   size_t count, best = 2;
   const uint32_t *corner = vxm_face(a->state->soup, face, &count);
-  double most = -1;
+  double most = -1, weight[3] = {1.0 / 3, 1.0 / 3, 1.0 / 3};
   for (size_t c = 2; c < count; c++) {
     const uint32_t triangle[3] = {corner[0], corner[c - 1], corner[c]};
     double area = vxm_vec3_length(vxm_polygon_area(a->state->soup->positions, triangle, 3, a->scale));
@@ -100,11 +103,17 @@ static void find_middle(const asking *a, size_t face, double middle[3]) {
       best = c;
     }
   }
-  for (int x = 0; x < 3; x++)
-    middle[x] = (vxm_position(a->state->soup, corner[0])[x] * a->scale +
-                 vxm_position(a->state->soup, corner[best - 1])[x] * a->scale +
-                 vxm_position(a->state->soup, corner[best])[x] * a->scale) /
-                3;
+  if (place >= VXM_FACE_PLACES / 2)
+    best = best + 1 < count ? best + 1 : 2;
+  for (int c = 0; c < 3 && place % 4 > 0; c++)
+    weight[c] = c == place % 4 - 1 ? NEAR : (1 - NEAR) / 2;
+  for (int x = 0; x < 3; x++) {
+    double p = vxm_position(a->state->soup, corner[0])[x] * a->scale;
+    double q = vxm_position(a->state->soup, corner[best - 1])[x] * a->scale;
+    double r = vxm_position(a->state->soup, corner[best])[x] * a->scale;
+    double mean = place % 4 > 0 ? weight[0] * p + weight[1] * q + weight[2] * r : (p + q + r) / 3;
+    point[x] = vxm_between_three(mean, p, q, r);
+  }
 }
 
 /** Of the scaled coordinates of a set: nearer than this a face is taken to lie at the origin of a ray. */
@@ -118,7 +127,7 @@ static double gap_of(const vxm_point_in_mesh *inside) {
 }
 
 /** Where a ray begins, and along which axis; the normal of the face, too. */
-static int find_origin(const asking *a, size_t face, double normal[3], double middle[3]) {
+static int find_origin(const asking *a, size_t face, int place, double normal[3], double origin[3]) {
   size_t count;
   int dominant = 0;
   const uint32_t *corner = vxm_face(a->state->soup, face, &count);
@@ -126,7 +135,7 @@ static int find_origin(const asking *a, size_t face, double normal[3], double mi
   normal[0] = area.x;
   normal[1] = area.y;
   normal[2] = area.z;
-  find_middle(a, face, middle);
+  find_point(a, face, place, origin);
   for (int axis = 1; axis < 3; axis++)
     dominant = fabs(normal[axis]) > fabs(normal[dominant]) ? axis : dominant;
   return dominant;
@@ -136,7 +145,7 @@ static int find_origin(const asking *a, size_t face, double normal[3], double mi
 static vxm_status ask(vxm_face_set_side *set, const asking *a, vxm_point_in_mesh *inside, bool balanced,
                       int around, double gap, vxm_error *error) {
   double along[3], middle[3];
-  int in = 0, in_all = 0, dominant = find_origin(a, set->face, along, middle);
+  int in = 0, in_all = 0, dominant = find_origin(a, set->face, set->place, along, middle);
   for (int axis = 0; axis < 3; axis++) {
     int above = 0, below = 0, votes = 0;
     if (!set->asks_within && axis != dominant)
@@ -178,7 +187,7 @@ static vxm_status is_in_open(asking *a, const double point[3], int *in, vxm_erro
 static vxm_status look_around(int around[2], asking *a, vxm_point_in_mesh *own, size_t face,
                               vxm_error *error) {
   double normal[3], middle[3], gap = gap_of(&a->all);
-  int all[2] = {0, 0}, less[2] = {0, 0}, in = 0, axis = find_origin(a, face, normal, middle);
+  int all[2] = {0, 0}, less[2] = {0, 0}, in = 0, axis = find_origin(a, face, 0, normal, middle);
   vxm_status status = is_in_open(a, middle, &in, error);
   if (status == VXM_OK)
     status = vxm_point_in_mesh_winding(&a->all, middle, axis, gap, &all[0], &all[1], error);

@@ -5,9 +5,12 @@
 
 #include "repair/state/edge_groups.h"
 
+enum { VXM_FACE_PLACES = 8 };
+
 typedef struct vxm_face_set_side {
   size_t face;      /**< the face of the set that is asked */
   size_t set;       /**< for the caller */
+  int place;        /**< where: 0 = its middle, up to VXM_FACE_PLACES - 1 = near one of its corners */
   bool asks_within; /**< whether `within` is to be told, which takes rays along three axes instead of one */
   int front, back;  /**< how often the faces of its group wind round the points before it (where its normal
                        points)  and behind it, as a ray to either side tells; themselves at the face passed

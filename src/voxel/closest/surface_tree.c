@@ -185,9 +185,46 @@ void vxm_surface_tree_destroy(vxm_surface_tree *tree) {
 typedef struct search {
   const vxm_surface_tree *tree;
   const double *p;
-  double square;
+  double square, reach; /**< of the hit; and what may be as near by the digits that count */
+  double digits;
   vxm_surface_hit hit;
 } search;
+
+/** One that has found nothing yet. */
+static search begin_search(const vxm_surface_tree *tree, const double p[3]) {
+  return (search){.tree = tree,
+                  .p = p,
+                  .square = INFINITY,
+                  .reach = INFINITY,
+                  .digits = INFINITY,
+                  .hit = {.triangle = UINT32_MAX}};
+}
+
+/** More than what the digits that count leave of a squared distance. */
+static const double digits_slack = 1 + 1e-6;
+
+/** The digits that count, rounded, so that walls upon each other are equally near whatever their corners are
+ * rounded to. */
+static double digits_of(double square) {
+  const uint64_t low = UINT64_C(1) << 29;
+  uint64_t bits;
+  memcpy(&bits, &square, sizeof bits);
+  bits = (bits + low / 2) & ~(low - 1);
+  memcpy(&square, &bits, sizeof square);
+  return square;
+}
+
+/** Of the sine of an angle: what tells two ways of facing apart. */
+static const double facing_steps = 0x1p20;
+
+/** How squarely a triangle faces a point or is turned away from it, and of equals those more that are turned
+ * away. */
+static int64_t facing_of(const disc *d, const double p[3], const double foot[3], double square) {
+  const double off[3] = {p[0] - foot[0], p[1] - foot[1], p[2] - foot[2]}, height = dot(d->normal, off);
+  if (!(square > 0) || isinf(square))
+    return 0;
+  return 2 * (int64_t)fmin(rint(fabs(height) / sqrt(square) * facing_steps), facing_steps) + (height < 0);
+}
 
 static double to_box(const box *b, const double p[3]) {
   double square = 0;
@@ -200,13 +237,32 @@ static double to_box(const box *b, const double p[3]) {
   return square * box_slack;
 }
 
+static int64_t facing_at(const search *s, uint32_t place, const double foot[3], double square) {
+  return facing_of(&s->tree->discs[place], s->p, foot, square);
+}
+
+/** Whether a triangle that is as near by the digits that count goes before the one that was found so far. */
+static bool goes_first(const search *s, double square, uint32_t place, const double foot[3]) {
+  uint32_t number = s->tree->numbers[place];
+  int64_t facing = facing_at(s, place, foot, square);
+  int64_t other = facing_at(s, s->hit.place, s->hit.foot, s->square);
+  if (facing != other)
+    return facing > other;
+  return square != s->square ? square < s->square : number < s->hit.triangle;
+}
+
 static void look_at(search *s, uint32_t place) {
   double foot[3], square = vxm_closest_point(&s->tree->triangles[place], s->p, foot);
-  uint32_t number = s->tree->numbers[place];
-  if (square > s->square || (square == s->square && number >= s->hit.triangle))
+  if (square > s->reach)
+    return;
+  double digits = digits_of(square);
+  if (digits > s->digits ||
+      (digits == s->digits && s->hit.triangle != UINT32_MAX && !goes_first(s, square, place, foot)))
     return;
   s->square = square;
-  s->hit = (vxm_surface_hit){.triangle = number, .place = place};
+  s->reach = square * digits_slack;
+  s->digits = digits;
+  s->hit = (vxm_surface_hit){.triangle = s->tree->numbers[place], .place = place};
   memcpy(s->hit.foot, foot, sizeof foot);
 }
 
@@ -220,14 +276,14 @@ vxm_surface_hit vxm_surface_tree_nearest(const vxm_surface_tree *tree, const dou
     size_t node;
     double square;
   } stack[DEPTH_MAX];
-  search s = {.tree = tree, .p = p, .square = INFINITY, .hit = {.triangle = UINT32_MAX}};
+  search s = begin_search(tree, p);
   int depth = 0;
   look_at(&s, near < tree->count ? near : 0);
   stack[depth].node = 1;
   stack[depth++].square = to_box(&tree->boxes[1], p);
   while (depth > 0) {
     size_t node = stack[--depth].node;
-    if (stack[depth].square > s.square)
+    if (stack[depth].square > s.reach)
       continue;
     if (node >= tree->leaf_count) {
       look_at_leaf(&s, node - tree->leaf_count);
@@ -308,7 +364,7 @@ static double begin_ball(vxm_surface_candidates *out, const vxm_surface_tree *tr
   const double off[3] = {hit->foot[0] - centre[0], hit->foot[1] - centre[1], hit->foot[2] - centre[2]};
   /* To a point of the ball the nearest is at most `radius` farther than to the centre, from where it is seen
    * as much farther again. */
-  const double reach = (sqrt(dot(off, off)) + 2 * radius) * (1 + 1e-9);
+  const double reach = (sqrt(dot(off, off)) + 2 * radius) * digits_slack;
   const double farthest = fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2])));
   out->tree = tree;
   out->scale = 1 / reach;
@@ -342,7 +398,7 @@ bool vxm_surface_candidates_gather(vxm_surface_candidates *out, const vxm_surfac
 
 /** How far a search may still look, squared, in the scale of the candidates. */
 static lanes reach_of(const search *s, double scale) {
-  return (float)(s->square * scale * scale) + square_slack + (lanes){0};
+  return (float)(s->reach * scale * scale) + square_slack + (lanes){0};
 }
 
 static lanes root(lanes x) {
@@ -389,7 +445,7 @@ static bool find_near(lane_mask *out, const vxm_surface_candidates *c, size_t gr
 
 vxm_surface_hit vxm_surface_candidates_nearest(const vxm_surface_candidates *c, const double p[3],
                                                uint32_t near) {
-  search s = {.tree = c->tree, .p = p, .square = INFINITY, .hit = {.triangle = UINT32_MAX}};
+  search s = begin_search(c->tree, p);
   lanes at[3];
   lane_mask is_near;
   place_point(at, c, p);

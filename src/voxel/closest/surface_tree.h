@@ -27,7 +27,11 @@ void vxm_surface_tree_destroy(vxm_surface_tree *tree);
 uint64_t vxm_surface_tree_bytes(size_t count);
 
 /**
- * The nearest triangle to a point, by vxm_closest_point; of equally near ones that with the lowest number.
+ * The nearest triangle to a point, by vxm_closest_point. Of equally near ones, by seven digits of the squared
+ * distance, the one whose plane is the most across the way to its foot goes first. Of two walls upon each
+ * other it is the one that the point is behind (its corners run to the right as seen from there): that of the
+ * body which the point is in. Of those left it is the nearest in further digits, then that with the lowest
+ * number.
  *
  * @param near the place of a triangle that is thought to be near; it only makes the search shorter
  */

@@ -363,7 +363,8 @@ vxm_status vxm_mesh_colors(uint8_t *values, const vxm_grid *grid, const vxm_soup
 uint64_t vxm_mesh_colors_bytes(const vxm_soup *mesh, const vxm_space *space, bool average) {
   size_t triangles =
       mesh->corner_count > 2 * mesh->face_count ? mesh->corner_count - 2 * mesh->face_count : 0;
-  uint64_t bytes = vxm_surface_tree_bytes(triangles) + 2 * triangles * sizeof(vxm_painted_triangle);
+  uint64_t bytes = vxm_surface_tree_bytes(triangles) + 2 * triangles * sizeof(vxm_painted_triangle) +
+                   mesh->face_count * (1 + sizeof(uint32_t));
   if (average)
     bytes += (uint64_t)vxm_context_threads(mesh->context) * (uint64_t)(space->dims[1] * space->dims[2]) *
              sizeof(vxm_surface_sum);

@@ -186,6 +186,22 @@ static double area_of(double corner[3][3]) {
   return sqrt(square) / 2;
 }
 
+/** Of the area that lies on the border of a voxel and has its outer side there: so much counts. It is seen
+ * only where the voxel holds nothing else, while the wall of a body beside the voxel's own takes no part. */
+static const double faint = 0x1p-30;
+
+/** Along an axis, the voxels that a triangle turns its outer side to from their border; -2 if there are none.
+ */
+static int64_t faced_from_border(const polygon *triangle, int axis) {
+  const double *p = triangle->at[0], *q = triangle->at[1], *r = triangle->at[2];
+  int b = (axis + 1) % 3, c = (axis + 2) % 3;
+  double plane = rint(p[axis]), normal = (q[b] - p[b]) * (r[c] - p[c]) - (r[b] - p[b]) * (q[c] - p[c]);
+  for (int corner = 0; corner < 3; corner++)
+    if (!(fabs(triangle->at[corner][axis] - plane) <= border))
+      return -2;
+  return fabs(plane) > 0x1p40 ? -2 : (int64_t)plane - (normal < 0);
+}
+
 static void add_triangle(const vxm_surface_slices *slices, size_t triangle, int64_t i,
                          vxm_surface_sum *sums) {
   const int64_t *dims = slices->space->dims;
@@ -197,14 +213,18 @@ static void add_triangle(const vxm_surface_slices *slices, size_t triangle, int6
     for (int a = 0; a < 3; a++)
       whole.at[c][a] = in_voxels(slices->space, a, corner[c][a]);
   cut_layer(&slice, &whole, 0, i);
-  double area = area_of(corner);
+  int64_t faced[3];
+  for (int a = 0; a < 3; a++)
+    faced[a] = faced_from_border(&whole, a);
+  double area = area_of(corner) * (i == faced[0] ? faint : 1);
   reach(&slice, 1, dims[1], &first[1], &last[1]);
   for (int64_t j = first[1]; j <= last[1]; j++) {
     cut_layer(&row, &slice, 1, j);
     reach(&row, 2, dims[2], &first[2], &last[2]);
     for (int64_t k = first[2]; k <= last[2]; k++) {
       cut_layer(&piece, &row, 2, k);
-      add_piece(slices->paint, triangle, area, &piece, &sums[j * dims[2] + k]);
+      double counted = area * (j == faced[1] || k == faced[2] ? faint : 1);
+      add_piece(slices->paint, triangle, counted, &piece, &sums[j * dims[2] + k]);
     }
   }
 }

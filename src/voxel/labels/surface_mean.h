@@ -24,8 +24,8 @@ vxm_status vxm_surface_slices_open(vxm_surface_slices *slices, const vxm_surface
                                    const vxm_space *space, vxm_error *error);
 void vxm_surface_slices_close(vxm_surface_slices *slices);
 
-/** Adds the surface within slice i to sums, [y][z] in C order; what lies on the border of two voxels belongs
- * to both. */
+/** Adds the surface within slice i to sums, [y][z] in C order. What lies on the border of two voxels belongs
+ * to both, but hardly to the one before it, which it colours only if that holds nothing else. */
 void vxm_surface_slices_sum(const vxm_surface_slices *slices, int64_t i, vxm_surface_sum *sums);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels/surface_paint.h"
+#include "mesh/inward_faces.h"
 #include "mesh/triangulate.h"
 
 #include <math.h>
@@ -13,6 +14,7 @@ typedef struct cutter {
   vxm_triangulator triangulator;
   double *positions;
   uint32_t *numbers; /**< 0, 1, 2, ... */
+  uint8_t *inward;   /**< per face */
   size_t capacity, number_capacity, triangle_capacity;
 } cutter;
 
@@ -34,9 +36,10 @@ static vxm_status add(cutter *cut, size_t face, const uint32_t *corners, const u
     return vxm_fail(error, VXM_ERROR_RANGE, "colours: the mesh has 2^32 triangles or more");
   vxm_status status = vxm_grow(context, (void **)&paint->triangles, &cut->triangle_capacity, paint->count + 1,
                                sizeof *paint->triangles, error);
+  bool turns = cut->inward[face];
   if (status == VXM_OK)
     paint->triangles[paint->count++] =
-        (vxm_painted_triangle){(uint32_t)face, {corner[0], corner[1], corner[2]}};
+        (vxm_painted_triangle){(uint32_t)face, {corner[0], corner[turns ? 2 : 1], corner[turns ? 1 : 2]}};
   return status;
 }
 
@@ -83,13 +86,20 @@ vxm_status vxm_surface_paint_open(vxm_surface_paint *paint, const vxm_soup *soup
   for (int b = 0; b < 256; b++)
     paint->light[b] = (float)vxm_srgb_decode(b / 255.0);
   cutter cut = {.paint = paint};
+  vxm_error local = VXM_ERROR_INIT;
+  cut.inward = vxm_alloc(soup->context, soup->face_count, sizeof *cut.inward, &local);
+  vxm_status status = cut.inward ? vxm_inward_faces(cut.inward, soup, &local) : local.code;
   vxm_triangulator_open(&cut.triangulator, soup->context);
-  vxm_status status = cut_all(&cut, error);
+  if (status == VXM_OK)
+    status = cut_all(&cut, &local);
   vxm_triangulator_close(&cut.triangulator);
   vxm_free(soup->context, cut.positions);
   vxm_free(soup->context, cut.numbers);
-  if (status != VXM_OK)
+  vxm_free(soup->context, cut.inward);
+  if (status != VXM_OK) {
     vxm_surface_paint_close(paint);
+    vxm_error_pass(error, &local);
+  }
   return status;
 }
 

@@ -8,7 +8,7 @@
 /** A triangle of a face, by three of its corners. */
 typedef struct vxm_painted_triangle {
   uint32_t face;
-  uint32_t corner[3]; /**< counted from the face's first */
+  uint32_t corner[3]; /**< counted from the face's first; they run to the left as seen from outside */
 } vxm_painted_triangle;
 
 typedef struct vxm_surface_paint {
