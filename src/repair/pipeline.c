@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/pipeline.h"
 #include "repair/bodies/bodies.h"
+#include "repair/bodies/inner_walls.h"
 #include "repair/clean/other_diagonals.h"
 #include "repair/exact/on_lattice.h"
 #include "repair/state/repair_state.h"
@@ -67,18 +68,21 @@ static vxm_status align_diagonals(vxm_repair_state *state, bool *changed, vxm_er
   return state->options.keep_duplicates ? VXM_OK : vxm_align_diagonals(state, changed, error);
 }
 
-/** The passes that make work for each other, and turns faces. That polygons are there
- * twice may show only when some of their triangles are gone or turned. */
+/** The passes that make work for each other; then walls in bodies go, if they are to, and faces are turned.
+ * That polygons are there twice may show only when some of their triangles are gone or turned. */
 static vxm_status settle(vxm_repair_state *state, vxm_error *error) {
-  bool more, turned;
+  bool more, walls = false, turned;
   vxm_status status = align_diagonals(state, &more, error);
   more = true; /* whether there were any or not */
   for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
     status = run_until_quiet(state, error);
     if (status == VXM_OK)
+      status = vxm_pass_inner_walls(state, &walls, error);
+    if (status == VXM_OK)
       status = run_pass(state, vxm_pass_orientation, 0.85, &turned, error);
     if (status == VXM_OK)
       status = align_diagonals(state, &more, error);
+    more = more || walls;
   }
   return status;
 }
