@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/pipeline.h"
 #include "repair/bodies/bodies.h"
+#include "repair/bodies/inner_walls.h"
+#include "repair/clean/other_diagonals.h"
 #include "repair/exact/on_lattice.h"
 #include "repair/state/repair_state.h"
 
@@ -58,6 +60,31 @@ static vxm_status settle_again(vxm_repair_state *state, bool *changed, vxm_error
   if (status == VXM_OK && state->provenance)
     status = vxm_provenance_settle(state->provenance, state->soup, error);
   return status == VXM_OK && *changed ? vxm_pass_orientation(state, &turned, error) : status;
+}
+
+/** Cuts polygons that are there twice alike, if repeated faces are to be looked at. */
+static vxm_status align_diagonals(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  *changed = false;
+  return state->options.keep_duplicates ? VXM_OK : vxm_align_diagonals(state, changed, error);
+}
+
+/** The passes that make work for each other; then walls in bodies go, if they are to, and faces are turned.
+ * That polygons are there twice may show only when some of their triangles are gone or turned. */
+static vxm_status settle(vxm_repair_state *state, vxm_error *error) {
+  bool more, walls = false, turned;
+  vxm_status status = align_diagonals(state, &more, error);
+  more = true; /* whether there were any or not */
+  for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
+    status = run_until_quiet(state, error);
+    if (status == VXM_OK)
+      status = vxm_pass_inner_walls(state, &walls, error);
+    if (status == VXM_OK)
+      status = run_pass(state, vxm_pass_orientation, 0.85, &turned, error);
+    if (status == VXM_OK)
+      status = align_diagonals(state, &more, error);
+    more = more || walls;
+  }
+  return status;
 }
 
 /** Separation, and what else it makes room for: where faces were cut apart others may come together. */
@@ -296,9 +323,7 @@ vxm_status vxm_pipeline_run(vxm_repair_state *state, const vxm_soup *in, bool *a
   bool changed;
   vxm_status status = run_first(state, error);
   if (status == VXM_OK)
-    status = run_until_quiet(state, error);
-  if (status == VXM_OK)
-    status = run_pass(state, vxm_pass_orientation, 0.85, &changed, error);
+    status = settle(state, error);
   if (status == VXM_OK)
     status = look_for_lost(state, in, again, error);
   if (status != VXM_OK || *again)

@@ -17,6 +17,7 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_ZERO_AREA] = "zero_area_faces",
     [VXM_PASS_DUPLICATES] = "duplicate_faces",
     [VXM_PASS_OPPOSITE_DUPLICATES] = "opposite_duplicate_faces",
+    [VXM_PASS_INNER_WALLS] = "inner_walls",
     [VXM_PASS_ORIENTATION] = "orientation",
     [VXM_PASS_WRAP] = "wrap",
     [VXM_PASS_SEPARATION] = "separation",

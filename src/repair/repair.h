@@ -18,6 +18,8 @@
  *  - zero_area_faces: faces without area that went; those without which more edges would be odd stay
  *  - duplicate_faces: faces that repeat an earlier one with the same orientation
  *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
+ *  - inner_walls: faces of walls within bodies that went, at VXM_LEVEL_CLOSED and above and before voxelizing
+ * (repair/bodies/inner_walls.h)
  *  - orientation: faces that were turned (repair/clean/orient.c)
  *  - wrap: faces of the surface that was put around everything (repair/exact/wrap.c)
  *  - separation: faces that were detached where a vertex or edge had too many

@@ -173,7 +173,8 @@ VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, co
  * each get their own vertices, at the same positions, and what several of them cover becomes layers that
  * nest: together they would be one component, and its parity that of their difference. Where faces cut
  * through each other so that there are no layers, bodies that share faces are separated as at
- * VXM_LEVEL_MANIFOLD. With keep_orientation they stay together. It is what voxmend voxelize and the Python
+ * VXM_LEVEL_MANIFOLD. Walls of one sheet that divide a body into chambers are left out. With keep_orientation
+ * they stay, and bodies stay together. It is what voxmend voxelize and the Python
  * package do. What vxm_mesh_divide took apart is repaired one by one, and no account of parts is kept of it.
  *
  * @return as vxm_mesh_repair

@@ -28,6 +28,7 @@ static void clean_mesh_stays(void **state) {
                                       "zero_area_faces",
                                       "duplicate_faces",
                                       "opposite_duplicate_faces",
+                                      "inner_walls",
                                       "orientation",
                                       "wrap",
                                       "separation",
