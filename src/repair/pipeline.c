@@ -294,6 +294,12 @@ static vxm_status look_for_lost(vxm_repair_state *state, const vxm_soup *in, boo
   return status;
 }
 
+/** Whether bodies that touch may be turned against each other, and are to become a manifold as they are. */
+static bool turns_bodies(const vxm_repair_state *state) {
+  return state->holds && !state->divides && vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) &&
+         !(state->options.wrap_alpha > 0);
+}
+
 vxm_status vxm_pipeline_run(vxm_repair_state *state, const vxm_soup *in, bool *again, vxm_error *error) {
   bool changed;
   vxm_status status = run_first(state, error);
@@ -309,6 +315,8 @@ vxm_status vxm_pipeline_run(vxm_repair_state *state, const vxm_soup *in, bool *a
     status = vxm_provenance_refer(state->provenance, state->soup, error);
   if (status == VXM_OK && state->provenance)
     status = vxm_provenance_settle(state->provenance, state->soup, error);
+  if (status == VXM_OK && turns_bodies(state))
+    status = vxm_pass_mixed_bodies(state, &changed, error);
   if (status == VXM_OK)
     status = run_further(state, error);
   if (status == VXM_OK && state->divides)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** T-junctions: assemblies of unit cubes with faces divided at random, whose volumes are known. */
+/** T-junctions, and bodies that are inside out: assemblies of unit cubes with faces divided and bodies turned
+ * at random, whose volumes are known. */
 #include "repair_test.h"
 
 #include "mesh/edges.h"
@@ -12,8 +13,9 @@ enum { N = 3, CELLS = N * N * N };
 typedef struct assembly {
   int body[CELLS]; /**< of each cell, from 1, or 0 */
   int bodies, cells;
-  double divided; /**< probability that a face is divided */
-  bool is_turned; /**< about an axis, so that nothing is exact any more */
+  double divided;  /**< probability that a face is divided */
+  bool is_turned;  /**< about an axis, so that nothing is exact any more */
+  uint64_t inward; /**< bit b: body b is inside out */
   vxm_soup *soup;
   vxm_rng rng;
 } assembly;
@@ -83,10 +85,11 @@ static void add_divided(assembly *a, double (*p)[3]) {
 }
 
 static void add_side(assembly *a, const int *cell, int axis, int side) {
+  bool outward = (a->inward >> body_at(a, cell) & 1) == 0;
   int u = (axis + 1) % 3, v = (axis + 2) % 3, first = (int)vxm_rng_below(&a->rng, 4);
   double p[4][3];
   for (int i = 0; i < 4; i++) {
-    int k = (side ? i : 3 - i) + first;
+    int k = ((side != 0) == outward ? i : 3 - i) + first;
     for (int j = 0; j < 3; j++)
       p[i][j] = cell[j];
     p[i][axis] += side;
@@ -149,6 +152,19 @@ static void touching_bodies(void **state) {
   check_random(*state, 3, true, 60);
 }
 
+/** Bodies that touch, some of them inside out: from VXM_LEVEL_MANIFOLD on all look outward. */
+static void bodies_inside_out(void **state) {
+  for (uint64_t seed = 1; seed <= 150; seed++) {
+    assembly a = {.rng = {seed}};
+    grow(&a, 2 + seed % 2, 1 + (int)vxm_rng_below(&a.rng, 6));
+    a.inward = vxm_rng_below(&a.rng, 16);
+    build(&a, *state);
+    check(&a, VXM_LEVEL_MANIFOLD, seed % 2, seed);
+    check(&a, VXM_LEVEL_CLOSED, seed % 2, seed);
+    vxm_soup_destroy(a.soup);
+  }
+}
+
 /** A face of a cube that is missing stays a hole of as many edges, whatever lies along the others. */
 static void hole_stays(void **state) {
   for (uint64_t seed = 1; seed <= 20; seed++) {
@@ -195,8 +211,9 @@ static void tolerance(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_body),   cmocka_unit_test(one_body_turned), cmocka_unit_test(touching_bodies),
-      cmocka_unit_test(hole_stays), cmocka_unit_test(tolerance),
+      cmocka_unit_test(one_body),        cmocka_unit_test(one_body_turned),
+      cmocka_unit_test(touching_bodies), cmocka_unit_test(bodies_inside_out),
+      cmocka_unit_test(hole_stays),      cmocka_unit_test(tolerance),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
