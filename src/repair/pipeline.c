@@ -14,21 +14,22 @@ static vxm_status run_pass(vxm_repair_state *state, vxm_pass_fn pass, double fra
 
 enum { ROUNDS_MAX = 8 };
 
-static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_zero_area, vxm_pass_duplicates,
-                                           vxm_pass_tolerant_weld};
+static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_zero_area,
+                                           vxm_pass_t_junctions, vxm_pass_duplicates, vxm_pass_tolerant_weld};
 enum { PASSES = sizeof round_passes / sizeof *round_passes };
 
 /** How much these have done so far. */
 static int64_t count_round(const vxm_repair_state *state) {
   return state->counts[VXM_PASS_REPEATED_CORNERS] + state->counts[VXM_PASS_ZERO_AREA] +
          state->counts[VXM_PASS_DUPLICATES] + state->counts[VXM_PASS_OPPOSITE_DUPLICATES] +
-         state->counts[VXM_PASS_TOLERANT_WELD];
+         state->counts[VXM_PASS_TOLERANT_WELD] + state->counts[VXM_PASS_T_JUNCTIONS];
 }
 
 /**
  * Runs the passes that may make work for each other round and round, until each has found nothing to do since
- * the last change; as each change takes away vertices or corners, this ends. Cracks are looked for last:
- * doubled faces hide them, and faces without area may bridge them.
+ * the last change; as each change takes away vertices or corners, or closes edges, this ends. Cracks are
+ * looked for last: doubled faces hide them, and faces without area may bridge them. T-junctions come before
+ * doubled faces, of which it is asked whether they are closed.
  */
 static vxm_status run_until_quiet(vxm_repair_state *state, vxm_error *error) {
   /* a given tolerance applies to the mesh as it is */
@@ -273,8 +274,9 @@ static vxm_status run_further(vxm_repair_state *state, vxm_error *error) {
 
 /** What comes once: polygons are cleaned before they become triangles and, for .stl, are rounded. */
 static vxm_status run_first(vxm_repair_state *state, vxm_error *error) {
-  static const vxm_pass_fn first[] = {vxm_pass_nonfinite,  vxm_pass_exact_weld, vxm_pass_repeated_corners,
-                                      vxm_pass_duplicates, vxm_pass_rounding,   vxm_pass_exact_weld};
+  static const vxm_pass_fn first[] = {vxm_pass_nonfinite,   vxm_pass_exact_weld, vxm_pass_repeated_corners,
+                                      vxm_pass_t_junctions, vxm_pass_duplicates, vxm_pass_rounding,
+                                      vxm_pass_exact_weld};
   enum { FIRST = sizeof first / sizeof *first, PLAIN = 2 };
   vxm_status status = VXM_OK;
   int passes = state->options.single_precision || state->options.triangles ? FIRST : PLAIN;
@@ -319,6 +321,12 @@ static vxm_status look_for_lost(vxm_repair_state *state, const vxm_soup *in, boo
   return status;
 }
 
+/** Whether bodies that touch may be turned against each other, and are to become a manifold as they are. */
+static bool turns_bodies(const vxm_repair_state *state) {
+  return state->holds && !state->divides && vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) &&
+         !(state->options.wrap_alpha > 0);
+}
+
 vxm_status vxm_pipeline_run(vxm_repair_state *state, const vxm_soup *in, bool *again, vxm_error *error) {
   bool changed;
   vxm_status status = run_first(state, error);
@@ -332,6 +340,8 @@ vxm_status vxm_pipeline_run(vxm_repair_state *state, const vxm_soup *in, bool *a
     status = vxm_provenance_refer(state->provenance, state->soup, error);
   if (status == VXM_OK && state->provenance)
     status = vxm_provenance_settle(state->provenance, state->soup, error);
+  if (status == VXM_OK && turns_bodies(state))
+    status = vxm_pass_mixed_bodies(state, &changed, error);
   if (status == VXM_OK)
     status = run_further(state, error);
   if (status == VXM_OK && state->divides)

@@ -15,6 +15,7 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_TOLERANT_WELD] = "tolerant_weld",
     [VXM_PASS_REPEATED_CORNERS] = "repeated_corners",
     [VXM_PASS_ZERO_AREA] = "zero_area_faces",
+    [VXM_PASS_T_JUNCTIONS] = "t_junctions",
     [VXM_PASS_DUPLICATES] = "duplicate_faces",
     [VXM_PASS_OPPOSITE_DUPLICATES] = "opposite_duplicate_faces",
     [VXM_PASS_INNER_WALLS] = "inner_walls",

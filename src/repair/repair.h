@@ -16,6 +16,8 @@
  *  - repeated_corners: faces that lost corners which repeat the one before, or a spike there and back; below
  *    three corners the face goes
  *  - zero_area_faces: faces without area that went; those without which more edges would be odd stay
+ *  - t_junctions: edges that were divided at vertices on them, where that closes edges
+ * (repair/weld/t_junctions.c)
  *  - duplicate_faces: faces that repeat an earlier one with the same orientation
  *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
  *  - inner_walls: faces of walls within bodies that went, at VXM_LEVEL_CLOSED and above and before voxelizing

@@ -26,6 +26,7 @@ static void clean_mesh_stays(void **state) {
                                       "tolerant_weld",
                                       "repeated_corners",
                                       "zero_area_faces",
+                                      "t_junctions",
                                       "duplicate_faces",
                                       "opposite_duplicate_faces",
                                       "inner_walls",

@@ -402,9 +402,35 @@ static int64_t count_shared(const parting *p) {
   return count;
 }
 
-static bool divide(parting *p, const uint8_t *touches, bool *changed) {
+/** Leaves only groups that wind round something one way and round something else the other way. */
+static bool keep_mixed(parting *p, bool *any) {
+  enum { OUTWARD = 1, INWARD = 2 };
+  uint8_t *ways = scratch(p, p->groups.count, sizeof *ways);
+  for (size_t f = 0; ways && f < p->soup->face_count; f++) {
+    if (!p->asked[p->groups.of_face[f]] || !vxm_layers_stands(&p->layers, f))
+      continue;
+    int64_t front = p->layers.front[vxm_set_of(p->layers.patch, f)];
+    uint8_t *way = &ways[p->groups.of_face[f]];
+    *way |= front + vxm_layers_surplus(&p->layers, f) > 0 ? OUTWARD : 0;
+    *way |= front < 0 ? INWARD : 0;
+  }
+  *any = false;
+  for (size_t g = 0; ways && g < p->groups.count; g++) {
+    p->asked[g] = p->asked[g] && !p->failed[g] && ways[g] == (OUTWARD | INWARD);
+    *any = *any || p->asked[g];
+  }
+  vxm_free(p->state->context, ways);
+  return ways != NULL;
+}
+
+static bool divide(parting *p, const uint8_t *touches, bool mixed, bool *changed) {
   vxm_repair_state *state = p->state;
-  if (!find_layers(p) || !put_pieces(p, touches) || !check_layers(p))
+  bool any = true;
+  if (!find_layers(p) || (mixed && !keep_mixed(p, &any)))
+    return false;
+  if (!any)
+    return true;
+  if (!put_pieces(p, touches) || !check_layers(p))
     return false;
   p->piece_count = 0;
   if (!put_pieces(p, touches)) /* once more, without what is none */
@@ -468,22 +494,24 @@ static bool cut_sheets(parting *p, bool *changed) {
   return true;
 }
 
-vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *error) {
+static vxm_status part(vxm_repair_state *state, bool mixed, bool *changed, vxm_error *error) {
   *changed = false;
   if (state->soup->face_count == 0)
     return VXM_OK;
   parting p = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
   uint8_t *touches = NULL;
   bool any = false, apart;
-  bool done = is_apart(state, &apart, &p.error) == VXM_OK;
-  if (done && apart) {
+  bool done = mixed || is_apart(state, &apart, &p.error) == VXM_OK;
+  if (done && !mixed && apart) {
     hand_on(state);
     return VXM_OK;
   }
-  done = done && cut_sheets(&p, changed) && vxm_repair_state_edges(state, &p.error) == VXM_OK &&
+  done = done && (mixed || cut_sheets(&p, changed)) && vxm_repair_state_edges(state, &p.error) == VXM_OK &&
          find_groups(&p, &any, &touches);
+  for (size_t g = 0; done && mixed && g < p.groups.count; g++)
+    touches[g] = 0;
   if (done && any)
-    done = divide(&p, touches, changed);
+    done = divide(&p, touches, mixed, changed);
   vxm_free(state->context, p.pieces);
   vxm_free(state->context, p.rims);
   vxm_free(state->context, p.failed);
@@ -497,4 +525,12 @@ vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *er
   if (!done)
     vxm_error_pass(error, &p.error);
   return done ? VXM_OK : p.error.code;
+}
+
+vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  return part(state, false, changed, error);
+}
+
+vxm_status vxm_pass_mixed_bodies(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  return part(state, true, changed, error);
 }

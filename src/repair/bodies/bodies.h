@@ -26,4 +26,10 @@
  */
 vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *error);
 
+/**
+ * The same for groups alone that wind round something one way and round something else the other way, as two
+ * cubes that share a side and of which one is inside out: after that all look outward. Nothing else changes.
+ */
+vxm_status vxm_pass_mixed_bodies(vxm_repair_state *state, bool *changed, vxm_error *error);
+
 #endif

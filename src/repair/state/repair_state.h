@@ -10,6 +10,14 @@
 #include "repair/state/merge_rule.h"
 #include "repair/state/provenance.h"
 
+/**
+ * Of the diagonal of the bounds. A crack is two runs of boundary edges with vertices that should be the same
+ * and are not, mostly because coordinates were rounded on the way, to a float or to the six digits of "%g":
+ * by some 1e-6 of the model's size. On real meshes nearly all that can be closed up to 1e-5 is closed from
+ * 1e-7 on; beyond, sheets begin to merge that are meant to be two.
+ */
+#define VXM_CRACK_WIDTH 5e-6
+
 typedef enum vxm_pass {
   VXM_PASS_ROUNDING = 0,
   VXM_PASS_NONFINITE,
@@ -17,6 +25,7 @@ typedef enum vxm_pass {
   VXM_PASS_TOLERANT_WELD,
   VXM_PASS_REPEATED_CORNERS,
   VXM_PASS_ZERO_AREA,
+  VXM_PASS_T_JUNCTIONS,
   VXM_PASS_DUPLICATES,
   VXM_PASS_OPPOSITE_DUPLICATES,
   VXM_PASS_INNER_WALLS,
@@ -66,6 +75,7 @@ typedef struct vxm_repair_state {
   vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
   bool renumbered;                         /**< faces have other numbers than they came in with */
   int64_t nonorientable;                   /**< patches, in the last pass of orientation */
+  bool holds;                              /**< it met patches that hold each other: see find_held */
   int64_t shared;                          /**< repeated faces that the last pass of duplicates left */
   int64_t open_parts;                      /**< that the last pass of closing left open */
   int64_t sheets;                          /**< open components that became plates, or went */
@@ -94,6 +104,7 @@ vxm_status vxm_pass_rounding(vxm_repair_state *state, bool *changed, vxm_error *
 vxm_status vxm_pass_nonfinite(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_exact_weld(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_tolerant_weld(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_t_junctions(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_repeated_corners(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_duplicates(vxm_repair_state *state, bool *changed, vxm_error *error);

@@ -3,14 +3,7 @@
 
 #include "mesh/sort.h"
 #include "mesh/triangulate.h"
-
-/** Arrays of faces, to take the place of a soup's. */
-typedef struct faces {
-  uint64_t *offsets;
-  uint32_t *indices, *tags, *parts;
-  uint8_t *turned;
-  size_t count, corners;
-} faces;
+#include "repair/state/face_list.h"
 
 /** Whether a corner of a polygon comes twice. */
 static bool touches_itself(const uint32_t *corner, size_t count, uint64_t *sorted) {
@@ -23,22 +16,8 @@ static bool touches_itself(const uint32_t *corner, size_t count, uint64_t *sorte
   return false;
 }
 
-static void put(faces *to, const vxm_repair_state *state, size_t face, const uint32_t *corner,
-                size_t corners) {
-  const vxm_soup *soup = state->soup;
-  for (size_t i = 0; i < corners; i++)
-    to->indices[to->corners + i] = corner[i];
-  if (to->tags)
-    to->tags[to->count] = soup->face_tags[face];
-  if (to->parts)
-    to->parts[to->count] = soup->face_parts[face];
-  if (to->turned)
-    to->turned[to->count] = state->turned[face];
-  to->corners += corners;
-  to->offsets[++to->count] = to->corners;
-}
-
-static vxm_status split(faces *to, const vxm_repair_state *state, const uint8_t *wanted, vxm_error *error) {
+static vxm_status split(vxm_face_list *to, const vxm_repair_state *state, const uint8_t *wanted,
+                        vxm_error *error) {
   const vxm_soup *soup = state->soup;
   vxm_triangulator tri;
   vxm_triangulator_open(&tri, soup->context);
@@ -47,38 +26,16 @@ static vxm_status split(faces *to, const vxm_repair_state *state, const uint8_t 
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count), *triangles;
     if (!wanted[f]) {
-      put(to, state, f, corner, count);
+      vxm_face_list_put(to, state, f, corner, count);
       continue;
     }
     status = vxm_triangulate(&tri, soup->positions, corner, count, &triangles, error);
     for (size_t t = 0; t + 2 < count && status == VXM_OK; t++)
       if (vxm_face_has_three(triangles + 3 * t, 3, NULL))
-        put(to, state, f, triangles + 3 * t, 3);
+        vxm_face_list_put(to, state, f, triangles + 3 * t, 3);
   }
   vxm_triangulator_close(&tri);
   return status;
-}
-
-static void drop(vxm_repair_state *state, faces *f) {
-  vxm_free(state->context, f->turned);
-  vxm_free(state->context, f->parts);
-  vxm_free(state->context, f->tags);
-  vxm_free(state->context, f->indices);
-  vxm_free(state->context, f->offsets);
-}
-
-/** Exchanges the faces that a work has and `f`. */
-static void exchange(vxm_repair_state *state, faces *f) {
-  vxm_soup *soup = state->soup;
-  faces old = {soup->offsets, soup->indices, soup->face_tags, soup->face_parts, state->turned, 0, 0};
-  soup->offsets = f->offsets;
-  soup->indices = f->indices;
-  soup->face_tags = f->tags;
-  soup->face_parts = f->parts;
-  state->turned = f->turned;
-  soup->face_count = soup->face_capacity = f->count;
-  soup->corner_count = soup->corner_capacity = f->corners;
-  *f = old;
 }
 
 static vxm_status split_marked(vxm_repair_state *state, const uint8_t *wanted, vxm_error *error) {
@@ -91,25 +48,13 @@ static vxm_status split_marked(vxm_repair_state *state, const uint8_t *wanted, v
   }
   if (corners == soup->corner_count)
     return VXM_OK;
-  faces made = {0};
-  vxm_status status = VXM_OK;
-  made.offsets = vxm_repair_state_scratch(state, count + 1, sizeof *made.offsets, &status, error);
-  if (status == VXM_OK)
-    made.indices = vxm_repair_state_scratch(state, corners, sizeof *made.indices, &status, error);
-  if (status == VXM_OK && soup->face_tags)
-    made.tags = vxm_repair_state_scratch(state, count, sizeof *made.tags, &status, error);
-  if (status == VXM_OK && soup->face_parts)
-    made.parts = vxm_repair_state_scratch(state, count, sizeof *made.parts, &status, error);
-  if (status == VXM_OK && state->turned)
-    made.turned = vxm_repair_state_scratch(state, count, sizeof *made.turned, &status, error);
+  vxm_face_list made;
+  vxm_status status = vxm_face_list_create(&made, state, count, corners, error);
   if (status == VXM_OK)
     status = split(&made, state, wanted, error);
-  if (status == VXM_OK) {
-    exchange(state, &made);
-    state->renumbered = true;
-    vxm_repair_state_touch(state);
-  }
-  drop(state, &made);
+  if (status == VXM_OK)
+    vxm_face_list_exchange(&made, state);
+  vxm_face_list_free(&made, state);
   return status;
 }
 

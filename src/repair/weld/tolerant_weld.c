@@ -10,11 +10,6 @@
 
 #include <string.h>
 
-/* A crack is two runs of boundary edges with vertices that should be the same and are not, mostly because
-   coordinates were rounded on the way, to a float or to the six digits of "%g": by some 1e-6 of the model's
-   size. On real meshes nearly all that can be closed up to 1e-5 is closed from 1e-7 on; beyond, sheets begin
-   to merge that are meant to be two. */
-static const double CRACK_WIDTH = 5e-6; /**< of the diagonal of the bounds */
 /** The crack width is at most this part of the edges at a merged vertex, so that no face collapses. */
 static const double EDGE_PART = 0.25;
 
@@ -86,7 +81,7 @@ static vxm_status weld_cracks(vxm_repair_state *state, uint32_t *map, vxm_error 
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
-  double tolerance = CRACK_WIDTH * frame.diagonal / frame.scale;
+  double tolerance = VXM_CRACK_WIDTH * frame.diagonal / frame.scale;
   size_t vertices = state->soup->vertex_count;
   vxm_status status = VXM_OK;
   vxm_error local = VXM_ERROR_INIT;
