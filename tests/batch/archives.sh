@@ -119,7 +119,7 @@ grep -q '^meshes *1$' said && grep -q '^passed over *2 .*hidden' said || fail "h
 # What Assimp reads is told of in an archive by its name, as in a folder.
 mkdir scenes
 "$BUILDDIR/samples/generate_samples" scenes
-rm -f scenes/*.off
+rm -f scenes/*.off scenes/*.step
 if "$VOXMEND" info -q scenes/stool.glb 2>/dev/null; then
   tar cf scenes.tar -C scenes stool.glb
   batch scenes -o scenes-folder >/dev/null

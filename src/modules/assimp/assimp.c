@@ -72,6 +72,11 @@ static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, cons
   return status;
 }
 
+/** Assimp takes any bytes for an empty scene of X3D. */
+static bool is_no_x3d(const vxm_reader_request *request) {
+  return strcmp(request->hint, "x3d") == 0 && !memmem(request->data, request->size, "<X3D", 4);
+}
+
 /** Brings a soup to millimetres. */
 static void apply_unit(vxm_soup *soup, double unit) {
   for (size_t i = 0; unit != 1 && i < 3 * (size_t)soup->vertex_count; i++)
@@ -101,6 +106,9 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
   }
   if (status == VXM_OK)
     status = import(soup, &narrowed, path, is_gltf(request) ? &gltf : NULL, error);
+  if (status == VXM_OK && soup->face_count == 0 && is_no_x3d(request))
+    status = vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){request->name, 0, -1, -1},
+                         "Assimp cannot read it: no X3D element");
   if (status == VXM_OK)
     apply_unit(soup, unit);
   vxm_free(soup->context, archive);
