@@ -104,7 +104,7 @@ static vxm_status find_spaces(walling *w, vxm_error *error) {
     w->space[i] = i;
   for (size_t e = 0; status == VXM_OK && e < w->state->edges.count; e++) {
     join_at(w, &w->edges[e], w->at_edge + w->begin[e], w->begin[e + 1] - w->begin[e]);
-    status = vxm_ask_at(e, w->state->context, error);
+    status = vxm_check_cancelled_at(e, w->state->context, error);
   }
   return status;
 }
@@ -255,6 +255,6 @@ vxm_status vxm_pass_inner_walls(vxm_repair_state *state, bool *changed, vxm_erro
   vxm_free(state->context, w.at_edge);
   vxm_free(state->context, w.begin);
   vxm_free(state->context, w.findings);
-  vxm_edge_groups_free(&w.groups, state->context);
+  vxm_edge_groups_destroy(&w.groups, state->context);
   return status;
 }
