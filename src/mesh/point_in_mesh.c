@@ -249,6 +249,23 @@ static void count_odd(double height, int turn, void *payload) {
   odd[height > 0] ^= 1;
 }
 
+void vxm_point_in_mesh_find_box(vxm_point_in_mesh *inside) {
+  for (int a = 0; a < 3; a++) {
+    inside->box[a] = INFINITY;
+    inside->box[a + 3] = -INFINITY;
+  }
+  for (size_t i = 0; i < inside->face_count; i++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);
+    for (size_t c = 0; c < count; c++)
+      for (int a = 0; a < 3; a++) {
+        double x = vxm_position(inside->soup, corner[c])[a] * inside->scale;
+        inside->box[a] = fmin(inside->box[a], x);
+        inside->box[a + 3] = fmax(inside->box[a + 3], x);
+      }
+  }
+}
+
 vxm_status vxm_point_in_mesh_vote(vxm_point_in_mesh *inside, const double point[3], int axis, int *votes,
                                   vxm_error *error) {
   int odd[2] = {0, 0};
