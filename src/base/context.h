@@ -74,14 +74,14 @@ vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction
  * every so many thousand steps, within some milliseconds. A worker of vxm_parallel hears whether the loop's
  * caller was told to stop. @return VXM_OK, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_ask(vxm_context *context, vxm_error *error);
+vxm_status vxm_check_cancelled(vxm_context *context, vxm_error *error);
 
-/** Steps of a simple loop between two calls of vxm_ask. */
-enum { VXM_ASK_STEPS = 1 << 14 };
+/** Steps of a simple loop between two calls of vxm_check_cancelled. */
+enum { VXM_CANCEL_STEPS = 1 << 14 };
 
-/** vxm_ask at every VXM_ASK_STEPS-th step of a loop. */
-static inline vxm_status vxm_ask_at(size_t step, vxm_context *context, vxm_error *error) {
-  return step % VXM_ASK_STEPS != 0 ? VXM_OK : vxm_ask(context, error);
+/** vxm_check_cancelled at every VXM_CANCEL_STEPS-th step of a loop. */
+static inline vxm_status vxm_check_cancelled_at(size_t step, vxm_context *context, vxm_error *error) {
+  return step % VXM_CANCEL_STEPS != 0 ? VXM_OK : vxm_check_cancelled(context, error);
 }
 
 /** A part of a longer piece of work. */

@@ -21,7 +21,7 @@ void vxm_progress_leave(vxm_progress_part before) {
   part = before;
 }
 
-/** What the thread told last, and when: vxm_ask tells it again. */
+/** What the thread told last, and when: vxm_check_cancelled tells it again. */
 static _Thread_local struct told {
   char phase[48];
   double fraction;
@@ -54,7 +54,7 @@ vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction
   return tell(context, error);
 }
 
-vxm_status vxm_ask(vxm_context *context, vxm_error *error) {
+vxm_status vxm_check_cancelled(vxm_context *context, vxm_error *error) {
   if (vxm_is_worker())
     return vxm_loop_stopped() ? vxm_fail_cancelled(error) : VXM_OK;
   const vxm_context *asks = context->asks;

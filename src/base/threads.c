@@ -199,7 +199,7 @@ typedef struct asked {
 static void run_asked(size_t task, int worker, void *payload) {
   asked *p = payload;
   if (worker == 0 && p->status == VXM_OK) {
-    p->status = vxm_ask(p->context, p->error);
+    p->status = vxm_check_cancelled(p->context, p->error);
     if (p->status != VXM_OK)
       atomic_store_explicit(&p->stop, true, memory_order_relaxed);
   }
@@ -207,9 +207,9 @@ static void run_asked(size_t task, int worker, void *payload) {
     p->function(task, worker, p->payload);
 }
 
-vxm_status vxm_parallel_asked(vxm_context *context, size_t count, vxm_task_fn function, void *payload,
-                              vxm_error *error) {
+vxm_status vxm_parallel_cancellable(vxm_context *context, size_t count, vxm_task_fn function, void *payload,
+                                    vxm_error *error) {
   asked p = {.function = function, .payload = payload, .context = context, .error = error};
   vxm_parallel(context, count, run_asked, &p);
-  return p.status == VXM_OK ? vxm_ask(context, error) : p.status;
+  return p.status == VXM_OK ? vxm_check_cancelled(context, error) : p.status;
 }

@@ -19,12 +19,12 @@ typedef void (*vxm_task_fn)(size_t task, int worker, void *payload);
 void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void *payload);
 
 /**
- * As vxm_parallel, but asks between tasks whether to go on (vxm_ask).
+ * As vxm_parallel, but asks between tasks whether to go on (vxm_check_cancelled).
  *
  * @return VXM_OK; VXM_ERROR_CANCELLED, then some tasks were left out
  */
-vxm_status vxm_parallel_asked(vxm_context *context, size_t count, vxm_task_fn function, void *payload,
-                              vxm_error *error);
+vxm_status vxm_parallel_cancellable(vxm_context *context, size_t count, vxm_task_fn function, void *payload,
+                                    vxm_error *error);
 
 /** For tasks that have asked by themselves: VXM_ERROR_CANCELLED, with what was told last in the message. */
 vxm_status vxm_fail_cancelled(vxm_error *error);

@@ -61,7 +61,7 @@ static vxm_status add_group(const planes *p, const vxm_vertex_groups *groups, si
     for (size_t w = 0; w < grid->word_count; w++)
       p->axis[axis][w] |= p->part[w];
   }
-  return vxm_ask(p->job->context, error);
+  return vxm_check_cancelled(p->job->context, error);
 }
 
 /** Step 2. */

@@ -174,7 +174,7 @@ vxm_status vxm_baseline_boxes(const vxm_baseline_job *job, vxm_error *error) {
       else
         draw_special(&w);
     }
-    status = vxm_ask_at(t, job->context, error);
+    status = vxm_check_cancelled_at(t, job->context, error);
   }
   vxm_free(job->context, keys);
   return status;

@@ -54,7 +54,7 @@ static vxm_status draw_all(const work *w, vxm_error *error) {
       for (int a = 0; a < 3; a++)
         at[c][a] = (double)p[c].at[a] / (double)surface->lattice.unit;
     draw(w, (const double(*)[3])at);
-    status = vxm_ask_at(64 * t, w->job->context, error);
+    status = vxm_check_cancelled_at(64 * t, w->job->context, error);
   }
   return status;
 }

@@ -21,7 +21,7 @@ vxm_status vxm_baseline_eisemann(const vxm_baseline_job *job, vxm_error *error) 
   vxm_grid *grid = job->grid;
   for (size_t t = 0; t < job->surface->triangle_count; t++) {
     vxm_point p[3];
-    vxm_status status = vxm_ask_at(t, job->context, error);
+    vxm_status status = vxm_check_cancelled_at(t, job->context, error);
     if (status != VXM_OK)
       return status;
     vxm_baseline_triangle(p, job, t);

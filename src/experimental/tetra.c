@@ -195,7 +195,7 @@ static vxm_status draw_slices(work *w, vxm_error *error) {
       draw_listed(w, s, &next);
     else
       draw_all(w, s);
-    status = vxm_ask(w->job->context, error);
+    status = vxm_check_cancelled(w->job->context, error);
   }
   return status;
 }
@@ -206,7 +206,7 @@ static vxm_status draw_layers(work *w, vxm_error *error) {
     int64_t end = end_slice(w, &w->made[t]);
     for (int64_t s = first_slice(w, &w->made[t]); s < end; s++)
       draw_section(w, &w->made[t], s);
-    status = vxm_ask_at(t, w->job->context, error);
+    status = vxm_check_cancelled_at(t, w->job->context, error);
   }
   return status;
 }

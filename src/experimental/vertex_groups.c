@@ -26,7 +26,7 @@ static vxm_status spread(uint32_t *tags, const vxm_baseline_job *job, vxm_error 
     for (size_t t = 0; t < surface->triangle_count; t++)
       changed |= lower(tags, surface->corners + 3 * t);
     job->report->rounds++;
-    status = vxm_ask(job->context, error);
+    status = vxm_check_cancelled(job->context, error);
   }
   return status;
 }

@@ -52,7 +52,7 @@ vxm_status vxm_baseline_zhang(const vxm_baseline_job *job, vxm_error *error) {
     vxm_baseline_triangle(p, job, t);
     vxm_touch_make(&touch, &job->surface->lattice, p, false);
     draw(job, &touch);
-    status = vxm_ask_at(t, job->context, error);
+    status = vxm_check_cancelled_at(t, job->context, error);
   }
   return status;
 }

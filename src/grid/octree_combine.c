@@ -92,7 +92,7 @@ static int deciding(vxm_set_operation op, cell a, cell b) {
 }
 
 /** Two nodes of a level at the same place. */
-static vxm_octree_cell combine_nodes(combination *c, int level, cell a, cell b, const int64_t at[3]) {
+static vxm_octree_state combine_nodes(combination *c, int level, cell a, cell b, const int64_t at[3]) {
   int64_t side = vxm_octree_side(level);
   int which = deciding(c->op, a, b);
   if (which >= 0)
@@ -107,12 +107,12 @@ static vxm_octree_cell combine_nodes(combination *c, int level, cell a, cell b, 
     for (int i = 0; i < 3; i++)
       below[i] = at[i] + below[i] * side;
     cell x = child_of(c, 0, level, a, p, child), y = child_of(c, 1, level, b, q, child);
-    vxm_octree_cell made =
+    vxm_octree_state made =
         level > 0 ? combine_nodes(c, level - 1, x, y, below)
                   : vxm_octree_growth_brick(
                         &c->result, apply(c->op, bits_of(c, 0, x, below), bits_of(c, 1, y, below)).low);
-    mixed |= (uint64_t)(made == VXM_CELL_MIXED) << child;
-    full |= (uint64_t)(made == VXM_CELL_FULL) << child;
+    mixed |= (uint64_t)(made == VXM_OCTREE_MIXED) << child;
+    full |= (uint64_t)(made == VXM_OCTREE_FULL) << child;
   }
   return vxm_octree_growth_node(&c->result, level, mixed, full, first);
 }

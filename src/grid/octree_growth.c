@@ -19,30 +19,30 @@ void vxm_octree_growth_reserve(vxm_octree_growth *growth, const vxm_sparse *a, c
                               a->node_count[l] + b->node_count[l], sizeof *sparse->nodes[l], growth->error);
 }
 
-vxm_octree_cell vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits) {
+vxm_octree_state vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits) {
   if (bits == 0 || bits == ~UINT64_C(0) || growth->status != VXM_OK)
-    return bits ? VXM_CELL_FULL : VXM_CELL_EMPTY;
+    return bits ? VXM_OCTREE_FULL : VXM_OCTREE_EMPTY;
   vxm_sparse *sparse = growth->sparse;
   growth->status = vxm_grow(sparse->context, (void **)&sparse->bricks, &growth->brick_capacity,
                             sparse->brick_count + 1, sizeof *sparse->bricks, growth->error);
   if (growth->status == VXM_OK)
     sparse->bricks[sparse->brick_count++] = bits;
-  return VXM_CELL_MIXED;
+  return VXM_OCTREE_MIXED;
 }
 
-vxm_octree_cell vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
-                                       size_t first) {
+vxm_octree_state vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
+                                        size_t first) {
   if (growth->status != VXM_OK)
-    return VXM_CELL_EMPTY;
+    return VXM_OCTREE_EMPTY;
   vxm_sparse *sparse = growth->sparse;
   if (level < sparse->levels - 1 && mixed == 0 && (full == 0 || full == ~UINT64_C(0)))
-    return full ? VXM_CELL_FULL : VXM_CELL_EMPTY;
+    return full ? VXM_OCTREE_FULL : VXM_OCTREE_EMPTY;
   size_t *count = &sparse->node_count[level];
   growth->status = vxm_grow(sparse->context, (void **)&sparse->nodes[level], &growth->node_capacity[level],
                             *count + 1, sizeof *sparse->nodes[level], growth->error);
   if (growth->status == VXM_OK)
     sparse->nodes[level][(*count)++] = (vxm_octree_node){mixed, full, mixed ? first : 0};
-  return VXM_CELL_MIXED;
+  return VXM_OCTREE_MIXED;
 }
 
 /** The mixed children of nodes side by side. */
@@ -61,8 +61,8 @@ static run children_of(const vxm_octree_node *nodes, run of) {
   return (run){(size_t)nodes[of.begin].first, (size_t)last->first + (size_t)vxm_popcount(last->mixed)};
 }
 
-vxm_octree_cell vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_sparse *from, int level,
-                                       size_t node) {
+vxm_octree_state vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_sparse *from, int level,
+                                        size_t node) {
   vxm_sparse *sparse = growth->sparse;
   run here = {node, node + 1};
   for (; level >= 0 && here.begin < here.end && growth->status == VXM_OK; level--) {
@@ -84,7 +84,7 @@ vxm_octree_cell vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_spar
   if (growth->status == VXM_OK && bricks > 0)
     memcpy(sparse->bricks + sparse->brick_count, from->bricks + here.begin, bricks * sizeof *sparse->bricks);
   sparse->brick_count += growth->status == VXM_OK ? bricks : 0;
-  return growth->status == VXM_OK ? VXM_CELL_MIXED : VXM_CELL_EMPTY;
+  return growth->status == VXM_OK ? VXM_OCTREE_MIXED : VXM_OCTREE_EMPTY;
 }
 
 vxm_status vxm_octree_growth_end(vxm_sparse **out, vxm_octree_growth *growth) {

@@ -6,7 +6,7 @@
 #include "grid/octree.h"
 
 /** What a brick or node turned out to be. */
-typedef enum vxm_octree_cell { VXM_CELL_EMPTY, VXM_CELL_FULL, VXM_CELL_MIXED } vxm_octree_cell;
+typedef enum vxm_octree_state { VXM_OCTREE_EMPTY, VXM_OCTREE_FULL, VXM_OCTREE_MIXED } vxm_octree_state;
 
 typedef struct vxm_octree_growth {
   vxm_sparse *sparse; /**< NULL once it was taken */
@@ -28,14 +28,14 @@ static inline size_t vxm_octree_growth_next(const vxm_octree_growth *growth, int
 }
 
 /** Adds a brick, unless it is empty or full. */
-vxm_octree_cell vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits);
+vxm_octree_state vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits);
 /** Adds a node whose children are there from `first` on, unless it is empty or full; the root always. */
-vxm_octree_cell vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
-                                       size_t first);
+vxm_octree_state vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
+                                        size_t first);
 
 /** Adds a mixed node of another octree of as many levels, below its root, with all that is below it. */
-vxm_octree_cell vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_sparse *from, int level,
-                                       size_t node);
+vxm_octree_state vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_sparse *from, int level,
+                                        size_t node);
 
 /** Hands the octree over, or drops it after a failure. @return growth->status */
 vxm_status vxm_octree_growth_end(vxm_sparse **out, vxm_octree_growth *growth);

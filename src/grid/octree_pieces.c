@@ -149,7 +149,7 @@ static void skip(build *b, uint64_t key, uint64_t bricks) {
     b->at++;
 }
 
-static vxm_octree_cell build_brick(build *b, uint64_t key) {
+static vxm_octree_state build_brick(build *b, uint64_t key) {
   uint64_t bits = 0;
   for (; b->at < b->end && b->at->key == key; b->at++)
     bits |= b->at->bits;
@@ -157,13 +157,13 @@ static vxm_octree_cell build_brick(build *b, uint64_t key) {
 }
 
 /** The node of a level over the pieces from a key on. */
-static vxm_octree_cell build_node(build *b, int level, uint64_t key) {
+static vxm_octree_state build_node(build *b, int level, uint64_t key) {
   uint64_t mixed = 0, full = 0, bricks = UINT64_C(1) << 6 * level; /* of a child */
   size_t first = vxm_octree_growth_next(&b->growth, level);
   while (b->at < b->end && b->at->key - key < 64 * bricks) {
     uint64_t child = (b->at->key - key) / bricks, from = key + child * bricks;
     uint64_t whole = b->at->key == from && b->at->bits == ~UINT64_C(0) ? b->at->bricks : 0;
-    vxm_octree_cell cell = VXM_CELL_FULL;
+    vxm_octree_state cell = VXM_OCTREE_FULL;
     if (whole > bricks) { /* the root */
       skip(b, key, 64 * bricks);
       full = ~UINT64_C(0);
@@ -173,8 +173,8 @@ static vxm_octree_cell build_node(build *b, int level, uint64_t key) {
       skip(b, from, bricks);
     else
       cell = level > 0 ? build_node(b, level - 1, from) : build_brick(b, from);
-    mixed |= (uint64_t)(cell == VXM_CELL_MIXED) << child;
-    full |= (uint64_t)(cell == VXM_CELL_FULL) << child;
+    mixed |= (uint64_t)(cell == VXM_OCTREE_MIXED) << child;
+    full |= (uint64_t)(cell == VXM_OCTREE_FULL) << child;
   }
   return vxm_octree_growth_node(&b->growth, level, mixed, full, first);
 }

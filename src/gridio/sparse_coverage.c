@@ -66,7 +66,7 @@ static vxm_status count_all(job *j, int64_t first, int64_t last, vxm_error *erro
   j->first = first;
   j->last = last;
   size_t tasks = (size_t)((last - first + j->layers - 1) / j->layers);
-  return vxm_parallel_asked(j->field->context, tasks, count_layers, j, error);
+  return vxm_parallel_cancellable(j->field->context, tasks, count_layers, j, error);
 }
 
 /* ---- Sources ---- */
@@ -154,7 +154,8 @@ static vxm_status count_file(job *j, vxm_error *error) {
   }
   rows.across = count[1];
   pthread_mutex_init(&rows.mutex, NULL);
-  vxm_status status = vxm_parallel_asked(j->field->context, count[0] * count[1], read_row, &rows, error);
+  vxm_status status =
+      vxm_parallel_cancellable(j->field->context, count[0] * count[1], read_row, &rows, error);
   pthread_mutex_destroy(&rows.mutex);
   if (status != VXM_OK || rows.failed == SIZE_MAX)
     return status;

@@ -30,7 +30,7 @@ const double *vxm_caps_position(const vxm_caps *caps, uint32_t vertex) {
   return vertex < known ? vxm_position(caps->soup, vertex) : caps->points[vertex - known];
 }
 
-void vxm_caps_free(vxm_caps *caps) {
+void vxm_caps_destroy(vxm_caps *caps) {
   vxm_context *context = caps->soup->context;
   vxm_free(context, caps->triangles);
   vxm_free(context, caps->points);

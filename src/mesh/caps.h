@@ -38,6 +38,6 @@ vxm_status vxm_caps_add(vxm_caps *caps, const vxm_boundary_loops *loops, size_t 
                         vxm_error *error);
 /** Position of a vertex of the soup or a new one. */
 const double *vxm_caps_position(const vxm_caps *caps, uint32_t vertex);
-void vxm_caps_free(vxm_caps *caps);
+void vxm_caps_destroy(vxm_caps *caps);
 
 #endif

@@ -118,7 +118,7 @@ static vxm_status measure_faces(taking *t, vxm_error *error) {
     vxm_error_pass(error, &local);
     return local.code;
   }
-  vxm_status status = vxm_parallel_asked(t->context, slices, add_slice, t, error);
+  vxm_status status = vxm_parallel_cancellable(t->context, slices, add_slice, t, error);
   face_sums all = {0};
   for (size_t i = 0; i < slices && status == VXM_OK; i++) {
     all.area += t->sums[i].area;
@@ -171,8 +171,8 @@ static vxm_status weld(taking *t, vxm_error *error) {
   t->welded.indices = vxm_alloc(t->context, t->soup->corner_count, sizeof *t->welded.indices, error);
   if (!t->welded.indices)
     return error->code;
-  status =
-      vxm_parallel_asked(t->context, t->soup->corner_count / CORNERS_PER_SLICE + 1, rename_slice, t, error);
+  status = vxm_parallel_cancellable(t->context, t->soup->corner_count / CORNERS_PER_SLICE + 1, rename_slice,
+                                    t, error);
   vxm_nonfinite_collapse(t->welded.indices, t->soup);
   vxm_free(t->context, t->map);
   t->map = NULL;

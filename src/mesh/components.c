@@ -107,7 +107,7 @@ vxm_status vxm_group_vertices(vxm_context *context, const vxm_soup *soup, const 
   grouping g = {.soup = soup, .map = vertex_map, .labels = (_Atomic uint32_t *)labels};
   g.face_slices = soup->face_count / PER_SLICE + 1;
   g.vertex_slices = soup->vertex_count / PER_SLICE + 1;
-  vxm_status status = vxm_parallel_asked(context, g.vertex_slices, start_slice, &g, error);
+  vxm_status status = vxm_parallel_cancellable(context, g.vertex_slices, start_slice, &g, error);
   if (status != VXM_OK)
     return status;
   int round = 0;
@@ -116,9 +116,9 @@ vxm_status vxm_group_vertices(vxm_context *context, const vxm_soup *soup, const 
     if (status != VXM_OK)
       return status;
     atomic_store_explicit(&g.changed, false, memory_order_relaxed);
-    status = vxm_parallel_asked(context, g.face_slices, join_slice, &g, error);
+    status = vxm_parallel_cancellable(context, g.face_slices, join_slice, &g, error);
     if (status == VXM_OK && atomic_load_explicit(&g.changed, memory_order_relaxed))
-      status = vxm_parallel_asked(context, g.vertex_slices, jump_slice, &g, error);
+      status = vxm_parallel_cancellable(context, g.vertex_slices, jump_slice, &g, error);
     if (status != VXM_OK)
       return status;
     round++;
@@ -136,7 +136,7 @@ static vxm_status number_faces(vxm_context *context, const vxm_soup *soup, const
     numbers[v] = UINT32_MAX;
   size_t next = 0;
   for (size_t f = 0; f < soup->face_count; f++) {
-    vxm_status status = vxm_ask_at(f, context, error);
+    vxm_status status = vxm_check_cancelled_at(f, context, error);
     if (status != VXM_OK)
       return status;
     if (next == UINT32_MAX)

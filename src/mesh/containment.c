@@ -85,7 +85,7 @@ static void empty_box(double box[6]) {
 /** Faces of one component mostly follow one another: the end of those that begin with `face`, or of as many
  * of them as are worked on without asking whether to go on. */
 static size_t end_of_run(const builder *b, size_t face) {
-  size_t end = face + 1, most = (face / VXM_ASK_STEPS + 1) * VXM_ASK_STEPS;
+  size_t end = face + 1, most = (face / VXM_CANCEL_STEPS + 1) * VXM_CANCEL_STEPS;
   while (end < b->soup->face_count && end < most && b->labels[end] == b->labels[face])
     end++;
   return end;
@@ -99,7 +99,7 @@ static bool measure_bodies(builder *b) {
   }
   for (size_t f = 0, end; f < b->soup->face_count; f = end) {
     end = end_of_run(b, f);
-    if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
+    if (vxm_check_cancelled_at(f, b->context, &b->error) != VXM_OK)
       return false;
     double box[6];
     memcpy(box, b->bodies[b->labels[f]].box, sizeof box);
@@ -173,7 +173,7 @@ static bool sum_volumes(builder *b, double *volume) {
   double scale = b->frame.scale;
   for (size_t f = 0, end; f < b->soup->face_count; f = end) {
     end = end_of_run(b, f);
-    if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
+    if (vxm_check_cancelled_at(f, b->context, &b->error) != VXM_OK)
       return false;
     volume[b->labels[f]] = add_cones(b, f, end, volume[b->labels[f]]);
   }
@@ -409,7 +409,7 @@ static bool find_parents(builder *b, uint32_t *parents) {
     return false;
   for (size_t i = 0; i < b->order_count; i++) {
     uint32_t *parent = &parents[b->order[i]];
-    if (vxm_ask(b->context, &b->error) != VXM_OK ||
+    if (vxm_check_cancelled(b->context, &b->error) != VXM_OK ||
         (b->soup->face_sets && find_parent(b, b->order[i], true, parent) != VXM_OK) ||
         (*parent == VXM_NO_COMPONENT && find_parent(b, b->order[i], false, parent) != VXM_OK))
       return false;

@@ -239,13 +239,14 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
   vxm_error local = VXM_ERROR_INIT;
   s.tables = vxm_alloc(context, workers * s.table_size, sizeof *s.tables, &local);
   s.tallies = s.tables ? vxm_alloc(context, workers * s.buckets.largest, sizeof *s.tallies, &local) : NULL;
-  status = s.tallies ? vxm_parallel_asked(context, bucket_count, search_bucket, &s, &local) : local.code;
+  status =
+      s.tallies ? vxm_parallel_cancellable(context, bucket_count, search_bucket, &s, &local) : local.code;
   if (status == VXM_OK)
     *out = (vxm_duplicates){atomic_load(&s.same), atomic_load(&s.opposite_pairs)};
   else
     vxm_error_pass(error, &local);
   vxm_free(context, s.tallies);
   vxm_free(context, s.tables);
-  vxm_radix_partition_free(&s.buckets);
+  vxm_radix_partition_destroy(&s.buckets);
   return status;
 }

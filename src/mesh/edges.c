@@ -84,7 +84,8 @@ static vxm_status sort_table(building *b, size_t *edges, vxm_context *context, v
   b->first_edge = vxm_alloc(context, b->slices, sizeof *b->first_edge, error);
   if (b->first_edge)
     b->scratch = vxm_alloc(context, workers * b->table->largest, sizeof *b->scratch, error);
-  vxm_status status = b->scratch ? vxm_parallel_asked(context, b->slices, sort_slice, b, error) : error->code;
+  vxm_status status =
+      b->scratch ? vxm_parallel_cancellable(context, b->slices, sort_slice, b, error) : error->code;
   vxm_free(context, b->scratch);
   for (size_t i = 0; status == VXM_OK && i < b->slices; i++) {
     size_t count = b->first_edge[i];
@@ -113,7 +114,7 @@ static vxm_status list(vxm_edges *out, vxm_side_table *table, size_t corners, bo
   vxm_status status = sort_table(&b, &edges, context, error);
   if (status == VXM_OK)
     status = make_room(&b, edges, corners, context, sided, error)
-                 ? vxm_parallel_asked(context, b.slices, write_slice, &b, error)
+                 ? vxm_parallel_cancellable(context, b.slices, write_slice, &b, error)
                  : error->code;
   vxm_free(context, b.first_edge);
   *out = (vxm_edges){.context = context,
@@ -142,7 +143,7 @@ static vxm_status run(vxm_edges *out, content wanted, vxm_context *context, cons
     out->count = table.count / 2;
   else if (status == VXM_OK)
     status = list(out, &table, soup->corner_count, wanted != EDGES, &local);
-  vxm_side_table_free(&table);
+  vxm_side_table_destroy(&table);
   if (status != VXM_OK) {
     vxm_edges_destroy(out);
     vxm_error_pass(error, &local);

@@ -108,7 +108,8 @@ static vxm_status pair(pairing *p, const vxm_soup *soup, vxm_error *error) {
     return error->code;
   if (p->table->count < soup->corner_count)
     memset(p->adjacent, 0xff, soup->corner_count * sizeof *p->adjacent); /* VXM_NO_ADJACENT */
-  return vxm_parallel_asked(context, p->table->vertex_count / VERTICES_PER_SLICE + 1, pair_slice, p, error);
+  return vxm_parallel_cancellable(context, p->table->vertex_count / VERTICES_PER_SLICE + 1, pair_slice, p,
+                                  error);
 }
 
 vxm_status vxm_face_adjacency_build(uint32_t **adjacent, vxm_side_table *table, const vxm_soup *soup,

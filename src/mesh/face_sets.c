@@ -66,7 +66,7 @@ vxm_status vxm_face_sets_part(vxm_soup *soup, vxm_error *error) {
   /* set by set: a vertex has to be remembered for one at a time */
   for (size_t i = 0; copies && i < soup->face_count && local.code == VXM_OK; i++) {
     part_face(soup, list.faces[i], copies, &local);
-    vxm_ask_at(i, soup->context, &local);
+    vxm_check_cancelled_at(i, soup->context, &local);
   }
   vxm_free(soup->context, copies);
   vxm_set_faces_destroy(&list);

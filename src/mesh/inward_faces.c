@@ -37,7 +37,7 @@ static bool measure(sorting *s) {
   for (size_t f = 0; f < s->soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(s->soup, f, &count);
-    if (vxm_ask_at(f, s->soup->context, &s->error) != VXM_OK)
+    if (vxm_check_cancelled_at(f, s->soup->context, &s->error) != VXM_OK)
       return false;
     if (count < 3 || !is_finite(s->soup, corner, count))
       continue;

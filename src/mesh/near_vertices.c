@@ -417,7 +417,7 @@ static vxm_status fill_cells(search *s, vxm_context *context, vxm_error *error) 
   s->slices = s->count / 16384 + 1;
   vxm_status status = lay_zones(s, members, context, error);
   if (status == VXM_OK)
-    status = vxm_parallel_asked(context, s->slices, start_slice, s, error);
+    status = vxm_parallel_cancellable(context, s->slices, start_slice, s, error);
   if (status != VXM_OK)
     return status;
   size_t bucket_count = vxm_radix_partition_advise(2 * members);
@@ -431,7 +431,7 @@ static vxm_status link_all(search *s, vxm_context *context, vxm_error *error) {
   s->scratch = vxm_alloc(context, workers * (s->table_size + s->buckets.largest), sizeof *s->scratch, error);
   if (!s->scratch)
     return error->code;
-  return vxm_parallel_asked(context, s->buckets.count, link_bucket, s, error);
+  return vxm_parallel_cancellable(context, s->buckets.count, link_bucket, s, error);
 }
 
 vxm_status vxm_near_vertices_group(vxm_context *context, const double *positions, size_t count,
@@ -448,7 +448,7 @@ vxm_status vxm_near_vertices_group(vxm_context *context, const double *positions
   if (status == VXM_OK)
     status = link_all(&s, context, &local);
   vxm_free(context, s.scratch);
-  vxm_radix_partition_free(&s.buckets);
+  vxm_radix_partition_destroy(&s.buckets);
   if (status == VXM_OK)
     status = map_groups(&s, context, map, &local);
   vxm_free(context, s.zones.marks);

@@ -65,7 +65,7 @@ static vxm_status find_edge_parts(measuring *m, const vxm_edges *edges) {
   for (size_t f = 0; f < m->view.face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(&m->view, f, &count);
-    if (vxm_ask_at(f, m->view.context, &m->error) != VXM_OK)
+    if (vxm_check_cancelled_at(f, m->view.context, &m->error) != VXM_OK)
       return m->error.code;
     if (!vxm_face_has_three(corner, count, NULL))
       continue;
@@ -108,7 +108,7 @@ static vxm_status measure(measuring *m, size_t part_count) {
   for (size_t v = 0; v < m->view.vertex_count; v++)
     m->vertex_part[v] = NO_PART;
   for (size_t f = 0; f < m->view.face_count; f++) {
-    if (vxm_ask_at(f, m->view.context, &m->error) != VXM_OK)
+    if (vxm_check_cancelled_at(f, m->view.context, &m->error) != VXM_OK)
       return m->error.code;
     add_face(m, &frame, f);
   }

@@ -51,7 +51,7 @@ static vxm_status visit_patch(walk *w, uint32_t first, uint32_t label, vxm_error
     if (at + AHEAD < queued)
       look_ahead(w, w->soup->offsets[w->queue[at + AHEAD]]);
     queued = visit(w, w->queue[at], queued);
-    status = vxm_ask_at(at + 1, w->soup->context, error);
+    status = vxm_check_cancelled_at(at + 1, w->soup->context, error);
   }
   return status;
 }
@@ -69,7 +69,7 @@ static vxm_status visit_all(vxm_patches *out, const vxm_soup *soup, const uint32
     if (w.label[f] == NONE)
       status = visit_patch(&w, (uint32_t)f, (uint32_t)out->count++, error);
     if (status == VXM_OK)
-      status = vxm_ask_at(f, out->context, error);
+      status = vxm_check_cancelled_at(f, out->context, error);
   }
   vxm_free(out->context, w.queue);
   out->may_repeat = w.may_repeat;
@@ -91,12 +91,12 @@ static vxm_status find_adjacent(uint32_t **adjacent, const vxm_soup *soup, const
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
       if (sides[c] != VXM_NO_EDGE && edges->edges[sides[c]].count == 2)
         both[sides[c]] ^= (uint32_t)f; /* the number of the one and that of the other */
-    status = vxm_ask_at(f, context, error);
+    status = vxm_check_cancelled_at(f, context, error);
   }
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
       (*adjacent)[c] = sides[c] != VXM_NO_EDGE ? both[sides[c]] ^ (uint32_t)f : VXM_NO_ADJACENT;
-    status = vxm_ask_at(f, context, error);
+    status = vxm_check_cancelled_at(f, context, error);
   }
   vxm_free(context, both);
   return status;

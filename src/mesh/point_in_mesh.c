@@ -60,7 +60,7 @@ static vxm_status for_each_triangle(const vxm_point_in_mesh *inside, triangle_fn
                                     vxm_error *error) {
   for (size_t i = 0; i < inside->face_count; i++) {
     size_t count;
-    vxm_status status = vxm_ask_at(i, inside->soup->context, error);
+    vxm_status status = vxm_check_cancelled_at(i, inside->soup->context, error);
     if (status != VXM_OK)
       return status;
     const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);
@@ -228,7 +228,7 @@ static vxm_status for_each_crossing(vxm_point_in_mesh *inside, const double poin
                 cell_of(bins, 0, point[across.u] - inside->box[across.u]);
   for (size_t i = bins->begin[cell]; i < bins->begin[cell + 1]; i++) {
     const triangle *t = &bins->triangles[i];
-    status = vxm_ask_at(++inside->tests, inside->soup->context, error);
+    status = vxm_check_cancelled_at(++inside->tests, inside->soup->context, error);
     if (status != VXM_OK)
       return status;
     bool covers = false;
@@ -247,6 +247,23 @@ static void count_odd(double height, int turn, void *payload) {
   int *odd = payload;
   (void)turn;
   odd[height > 0] ^= 1;
+}
+
+void vxm_point_in_mesh_find_box(vxm_point_in_mesh *inside) {
+  for (int a = 0; a < 3; a++) {
+    inside->box[a] = INFINITY;
+    inside->box[a + 3] = -INFINITY;
+  }
+  for (size_t i = 0; i < inside->face_count; i++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);
+    for (size_t c = 0; c < count; c++)
+      for (int a = 0; a < 3; a++) {
+        double x = vxm_position(inside->soup, corner[c])[a] * inside->scale;
+        inside->box[a] = fmin(inside->box[a], x);
+        inside->box[a + 3] = fmax(inside->box[a + 3], x);
+      }
+  }
 }
 
 vxm_status vxm_point_in_mesh_vote(vxm_point_in_mesh *inside, const double point[3], int axis, int *votes,
@@ -355,7 +372,7 @@ vxm_status vxm_point_in_mesh_on_face(vxm_point_in_mesh *inside, const double poi
     for (size_t i = cells.low[0]; i <= cells.high[0]; i++) {
       size_t cell = j * bins->cells[0] + i;
       for (size_t k = bins->begin[cell]; k < bins->begin[cell + 1] && status == VXM_OK; k++) {
-        status = vxm_ask_at(++inside->tests, inside->soup->context, error);
+        status = vxm_check_cancelled_at(++inside->tests, inside->soup->context, error);
         if (status == VXM_OK && is_on_triangle(inside, &bins->triangles[k], point, gap)) {
           *result = true;
           return VXM_OK;

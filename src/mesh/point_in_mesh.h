@@ -29,6 +29,9 @@ typedef struct vxm_point_in_mesh {
   size_t tests; /**< of triangles with lines so far */
 } vxm_point_in_mesh;
 
+/** Finds the box of the faces; before anything is asked. */
+void vxm_point_in_mesh_find_box(vxm_point_in_mesh *inside);
+
 /**
  * Sends rays from a point both ways along an axis.
  *

@@ -66,19 +66,19 @@ vxm_status vxm_radix_partition_fill(vxm_radix_partition *out, vxm_context *conte
   d.next = vxm_calloc(context, d.slices * bucket_count, sizeof *d.next, &local);
   if (d.next)
     out->begin = vxm_alloc(context, bucket_count + 1, sizeof *out->begin, &local);
-  if (out->begin && vxm_parallel_asked(context, d.slices, run_slice, &d, &local) == VXM_OK)
+  if (out->begin && vxm_parallel_cancellable(context, d.slices, run_slice, &d, &local) == VXM_OK)
     out->records = vxm_alloc(context, place_records(&d), sizeof *out->records, &local);
   d.records = out->records;
-  bool done = d.records && vxm_parallel_asked(context, d.slices, run_slice, &d, &local) == VXM_OK;
+  bool done = d.records && vxm_parallel_cancellable(context, d.slices, run_slice, &d, &local) == VXM_OK;
   vxm_free(context, d.next);
   if (done)
     return VXM_OK;
-  vxm_radix_partition_free(out);
+  vxm_radix_partition_destroy(out);
   vxm_error_pass(error, &local);
   return local.code;
 }
 
-void vxm_radix_partition_free(vxm_radix_partition *buckets) {
+void vxm_radix_partition_destroy(vxm_radix_partition *buckets) {
   if (!buckets->context)
     return;
   vxm_free(buckets->context, buckets->records);

@@ -41,6 +41,6 @@ size_t vxm_radix_partition_advise(size_t records);
  */
 vxm_status vxm_radix_partition_fill(vxm_radix_partition *out, vxm_context *context, size_t items,
                                     size_t bucket_count, vxm_emit_fn emit, void *payload, vxm_error *error);
-void vxm_radix_partition_free(vxm_radix_partition *buckets);
+void vxm_radix_partition_destroy(vxm_radix_partition *buckets);
 
 #endif

@@ -73,7 +73,7 @@ static void run_slice(size_t slice, int worker, void *payload) {
   uint32_t *next = b->next[slice];
   for (size_t from = begin, to; from < end; from = to) {
     to = end - from < FACES_PER_SLICE ? end : from + FACES_PER_SLICE;
-    b->cancelled[slice] = vxm_ask(b->context, NULL) != VXM_OK;
+    b->cancelled[slice] = vxm_check_cancelled(b->context, NULL) != VXM_OK;
     if (b->cancelled[slice])
       return;
     if (b->records)
@@ -157,13 +157,13 @@ vxm_status vxm_side_table_build(vxm_side_table *out, vxm_context *context, const
     vxm_free(context, b.next[s]);
   }
   if (status != VXM_OK) {
-    vxm_side_table_free(out);
+    vxm_side_table_destroy(out);
     vxm_error_pass(error, &local);
   }
   return status;
 }
 
-void vxm_side_table_free(vxm_side_table *table) {
+void vxm_side_table_destroy(vxm_side_table *table) {
   if (!table->context)
     return;
   vxm_free(table->context, table->records);

@@ -34,7 +34,7 @@ typedef struct vxm_side_group {
 } vxm_side_group;
 
 /**
- * @param[out] out   freed with vxm_side_table_free; a failure leaves nothing to free
+ * @param[out] out   freed with vxm_side_table_destroy; a failure leaves nothing to free
  * @param vertex_map vertex to take in place of each vertex, or NULL
  *
  * Faces with fewer than three distinct corners (after mapping) take no part, and a side from a vertex to
@@ -45,7 +45,7 @@ typedef struct vxm_side_group {
  */
 vxm_status vxm_side_table_build(vxm_side_table *out, vxm_context *context, const vxm_soup *soup,
                                 const uint32_t *vertex_map, vxm_error *error);
-void vxm_side_table_free(vxm_side_table *table);
+void vxm_side_table_destroy(vxm_side_table *table);
 
 static inline vxm_side_group vxm_side_group_of(const vxm_side_table *table, size_t vertex) {
   const uint32_t *ends = table->ends + 2 * vertex;

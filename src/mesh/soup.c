@@ -156,7 +156,7 @@ static vxm_status copy_bytes(vxm_context *context, void *to, const void *from, s
   vxm_status status = VXM_OK;
   for (size_t done = 0; done < size && status == VXM_OK; done += CHUNK) {
     memcpy((char *)to + done, (const char *)from + done, size - done < CHUNK ? size - done : CHUNK);
-    status = vxm_ask(context, error);
+    status = vxm_check_cancelled(context, error);
   }
   return status;
 }

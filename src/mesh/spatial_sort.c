@@ -113,7 +113,7 @@ static range split(vxm_spatial_point *points, range *r) {
 }
 
 static bool goes_on(sorter *s) {
-  if (s->context && vxm_ask(s->context, NULL) != VXM_OK)
+  if (s->context && vxm_check_cancelled(s->context, NULL) != VXM_OK)
     atomic_store_explicit(&s->stop, true, memory_order_relaxed);
   return !atomic_load_explicit(&s->stop, memory_order_relaxed);
 }

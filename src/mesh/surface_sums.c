@@ -109,7 +109,7 @@ vxm_status vxm_surface_sums_of(vxm_surface_sums *out, const vxm_soup *soup, cons
     s.end = soup->face_count - s.begin < block ? soup->face_count : s.begin + block;
     vxm_parallel(soup->context, (s.end - s.begin - 1) / SLICE + 1, measure_slice, &s);
     add_shares(out, s.shares, s.end - s.begin);
-    status = vxm_ask(soup->context, &local);
+    status = vxm_check_cancelled(soup->context, &local);
   }
   vxm_free(soup->context, s.shares);
   out->volume = out->volume / s.scale / s.scale / s.scale;

@@ -86,7 +86,7 @@ static vxm_status spread(net *n, vxm_context *context, size_t count, const uint8
                          vxm_error *error) {
   vxm_status status = VXM_OK;
   for (size_t v = 0; v < count && status == VXM_OK; v++) {
-    status = vxm_ask_at(v, context, error);
+    status = vxm_check_cancelled_at(v, context, error);
     if (!members[v] || map[v] != v)
       continue;
     map[v] = find_nearest(n, (uint32_t)v).vertex;
@@ -96,7 +96,7 @@ static vxm_status spread(net *n, vxm_context *context, size_t count, const uint8
     }
   }
   for (size_t v = 0; v < count && status == VXM_OK; v++) {
-    status = vxm_ask_at(v, context, error);
+    status = vxm_check_cancelled_at(v, context, error);
     /* of what was merged before this is the vertex it went to, as no other is near to it */
     if (members[v] && map[v] != v)
       map[v] = find_nearest(n, (uint32_t)v).vertex;

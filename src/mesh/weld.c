@@ -82,11 +82,11 @@ vxm_status vxm_weld_exact(vxm_context *context, const double *positions, size_t 
   vxm_error local = VXM_ERROR_INIT;
   w.tables =
       vxm_alloc(context, (size_t)vxm_context_threads(context) * w.table_size, sizeof *w.tables, &local);
-  status = w.tables ? vxm_parallel_asked(context, bucket_count, weld_bucket, &w, &local) : local.code;
+  status = w.tables ? vxm_parallel_cancellable(context, bucket_count, weld_bucket, &w, &local) : local.code;
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
   vxm_free(context, w.tables);
-  vxm_radix_partition_free(&w.buckets);
+  vxm_radix_partition_destroy(&w.buckets);
   if (status == VXM_OK && distinct) {
     *distinct = 0;
     for (size_t v = 0; v < count; v++)

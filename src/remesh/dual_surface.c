@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "remesh/dual_surface.h"
 
-#include "remesh/cell_cycles.h"
+#include "remesh/cube_cycles.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,7 +24,7 @@ struct vxm_dual_surface {
   float (*shares[2])[3]; /**< of the links that begin in these slices */
   around *flat[2][2];    /**< of the links along x and y in these slices, by the centre they begin at */
   around *upright;       /**< of the links between them */
-  vxm_cell_cycles cycles[VXM_CELL_CONFIGURATIONS];
+  vxm_cube_cycles cycles[VXM_CUBE_CONFIGURATIONS];
   bool meets_itself;
 };
 
@@ -71,7 +71,7 @@ vxm_status vxm_dual_surface_create(vxm_dual_surface **out, vxm_context *context,
     }
     if (room)
       s->upright = vxm_alloc(context, area, sizeof *s->upright, &local);
-    vxm_cell_cycles_find(s->cycles);
+    vxm_cube_cycles_find(s->cycles);
   }
   if (local.code != VXM_OK) {
     release(context, s);
@@ -98,20 +98,20 @@ vxm_soup *vxm_dual_surface_take(vxm_dual_surface *s, bool *meets_itself) {
 /** Where the vertices of a cell are kept for a link of it: in which the cell is on the far side of where the
  * link is near, and the other way. */
 static around *around_link(vxm_dual_surface *s, int link, size_t i, size_t j) {
-  int corner = vxm_cell_link_begin(link), axis = link / 4;
+  int corner = vxm_cube_link_begin(link), axis = link / 4;
   size_t at = centre(s, i + (size_t)(corner & 1), j + (size_t)(corner >> 1 & 1));
   return axis == 2 ? &s->upright[at] : &s->flat[corner >> 2][axis][at];
 }
 
 /** Gives the sheets of a cell their vertices. */
 static vxm_status add_vertices(vxm_dual_surface *s, size_t i, size_t j, unsigned set, vxm_error *error) {
-  const vxm_cell_cycles *c = &s->cycles[set];
+  const vxm_cube_cycles *c = &s->cycles[set];
   double sum[4][3] = {{0}};
   int count[4] = {0};
-  for (int link = 0; link < VXM_CELL_LINKS; link++) {
+  for (int link = 0; link < VXM_CUBE_LINKS; link++) {
     if (c->cycle[link] == VXM_NO_CYCLE)
       continue;
-    int p = vxm_cell_link_begin(link), axis = link / 4;
+    int p = vxm_cube_link_begin(link), axis = link / 4;
     double *at = sum[c->cycle[link]];
     for (int a = 0; a < 3; a++)
       at[a] += p >> a & 1;

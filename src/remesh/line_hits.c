@@ -245,7 +245,7 @@ static vxm_status add_triangle(search *s, const double p[3][3], vxm_error *error
       l.at[c] = (int64_t)j;
       status = add_row(s, p, &l, (hit){.sine = (float)(n[a] / length), .main = (uint8_t)main}, error);
       if (status == VXM_OK && ++s->rows % ASK_ROWS == 0)
-        status = vxm_ask(s->hits->context, error);
+        status = vxm_check_cancelled(s->hits->context, error);
     }
   }
   return status;
@@ -257,7 +257,7 @@ static vxm_status add_triangles(search *s, vxm_error *error) {
   vxm_status status = VXM_OK;
   for (size_t t = 0; t < s->surface->triangle_count && status == VXM_OK; t++) {
     double p[3][3];
-    if (t % 4096 == 0 && (status = vxm_ask(s->hits->context, error)) != VXM_OK)
+    if (t % 4096 == 0 && (status = vxm_check_cancelled(s->hits->context, error)) != VXM_OK)
       break;
     for (size_t c = 0; c < 3; c++)
       for (int a = 0; a < 3; a++)

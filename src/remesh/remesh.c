@@ -34,7 +34,7 @@ static vxm_status put_slices(vxm_dual_surface *surface, const vxm_line_hits *hit
   const int64_t *dims = solid->space.dims;
   float(*shares)[3] = vxm_calloc(solid->context, (size_t)dims[0] * (size_t)dims[1], sizeof *shares, &local);
   for (int64_t k = 0; k < dims[2] && local.code == VXM_OK; k++)
-    if (vxm_ask(solid->context, &local) == VXM_OK) {
+    if (vxm_check_cancelled(solid->context, &local) == VXM_OK) {
       vxm_line_hits_slice(shares, hits, k);
       vxm_dual_surface_put(surface, vxm_grid_row(solid, 0, k), (const float(*)[3])shares, &local);
     }

@@ -87,7 +87,7 @@ static bool find_degenerate(finding *f) {
   for (size_t i = 0; i < f->soup->face_count; i++) {
     size_t count;
     const uint32_t *corner = vxm_face(f->state.soup, i, &count);
-    if (vxm_ask_at(i, f->state.context, &f->error) != VXM_OK)
+    if (vxm_check_cancelled_at(i, f->state.context, &f->error) != VXM_OK)
       return false;
     bool bad = vxm_unit_scale_no_area(&frame, f->soup, i) || !vxm_face_has_three(corner, count, NULL);
     bad = bad && vxm_face_is_finite(f->soup, f->soup->indices + f->soup->offsets[i], count);

@@ -256,7 +256,7 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
     if (status == VXM_OK)
       status = wrap_crossing(state, error);
   }
-  vxm_before_union_free(&before, state->context);
+  vxm_before_union_destroy(&before, state->context);
   return status;
 }
 
@@ -317,7 +317,7 @@ static vxm_status look_for_lost(vxm_repair_state *state, const vxm_soup *in, boo
     return VXM_OK;
   }
   state->lost_parts = status == VXM_OK ? (int64_t)lost.count : 0;
-  vxm_lost_parts_free(&lost, state->context);
+  vxm_lost_parts_destroy(&lost, state->context);
   return status;
 }
 

@@ -123,7 +123,7 @@ static vxm_status repair(vxm_repair_state *state, const vxm_soup *in, const vxm_
     if (status != VXM_OK || again)
       vxm_soup_destroy(state->soup);
   } while (status == VXM_OK && again);
-  vxm_lost_parts_free(&lost, in->context);
+  vxm_lost_parts_destroy(&lost, in->context);
   state->lost = lost;
   if (status != VXM_OK)
     state->soup = NULL;

@@ -68,7 +68,7 @@ static vxm_status take_set(work *w, size_t set, vxm_soup **piece) {
     if (status == VXM_OK)
       status = take_tag(w, *piece, i, w->in->face_tags[face]);
     if (status == VXM_OK)
-      status = vxm_ask_at(i, w->context, &w->error);
+      status = vxm_check_cancelled_at(i, w->context, &w->error);
   }
   return status;
 }
@@ -103,7 +103,7 @@ static vxm_status put_set(work *w, size_t set, const vxm_soup *piece, bool turne
     out->face_sets[before + f] = (uint32_t)set;
     status = put_face(w, piece, f, first, turned);
     if (status == VXM_OK)
-      status = vxm_ask_at(f, w->context, &w->error);
+      status = vxm_check_cancelled_at(f, w->context, &w->error);
   }
   for (int i = 0; i < piece->warnings.count; i++)
     vxm_warn(&out->warnings, "%s", piece->warnings.text[i]);

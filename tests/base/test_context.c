@@ -58,17 +58,17 @@ static void questions_repeat_what_was_told(void **state) {
   vxm_context *context = asking_context(1, &a);
   assert_int_equal(vxm_progress(context, "weighing", 0.25, &error), VXM_OK);
   for (int i = 0; i < 1000; i++) /* too soon after it */
-    assert_int_equal(vxm_ask(context, &error), VXM_OK);
+    assert_int_equal(vxm_check_cancelled(context, &error), VXM_OK);
   assert_true(a.calls < 4);
   context->ask_ms = 0;
   a.calls = 1;
-  assert_int_equal(vxm_ask(context, &error), VXM_OK);
-  assert_int_equal(vxm_ask_at(VXM_ASK_STEPS - 1, context, &error), VXM_OK);
+  assert_int_equal(vxm_check_cancelled(context, &error), VXM_OK);
+  assert_int_equal(vxm_check_cancelled_at(VXM_CANCEL_STEPS - 1, context, &error), VXM_OK);
   assert_int_equal(a.calls, 2);
   assert_string_equal(a.phase, "weighing");
   assert_true(a.fraction == 0.25);
-  assert_int_equal(vxm_ask_at(VXM_ASK_STEPS, context, &error), VXM_OK);
-  assert_int_equal(vxm_ask(context, &error), VXM_ERROR_CANCELLED);
+  assert_int_equal(vxm_check_cancelled_at(VXM_CANCEL_STEPS, context, &error), VXM_OK);
+  assert_int_equal(vxm_check_cancelled(context, &error), VXM_ERROR_CANCELLED);
   assert_string_equal(error.text, "cancelled while weighing");
   vxm_context_destroy(context);
 }
@@ -83,7 +83,7 @@ typedef struct counted {
 static void count_task(size_t task, int worker, void *payload) {
   (void)task, (void)worker;
   counted *c = payload;
-  while (c->inside && vxm_ask(c->asks, NULL) == VXM_OK)
+  while (c->inside && vxm_check_cancelled(c->asks, NULL) == VXM_OK)
     ;
   if (c->slow) /* so that the thread that asks gets its turns before all is done, whatever else the machine
                   does */
@@ -102,11 +102,11 @@ static void loops_end_when_told_to(void **state) {
       context->ask_ms = 0;
       assert_int_equal(vxm_context_child(&child, context, true, &error), VXM_OK);
       counted c = {.asks = child, .inside = inside, .slow = !inside}; /* a child asks as its parent does */
-      assert_int_equal(vxm_parallel_asked(context, TASKS, count_task, &c, &error), VXM_ERROR_CANCELLED);
+      assert_int_equal(vxm_parallel_cancellable(context, TASKS, count_task, &c, &error), VXM_ERROR_CANCELLED);
       assert_true(atomic_load(&c.done) < TASKS);
       a.stop_at = INT32_MAX; /* which the next loop knows nothing of */
       c = (counted){.asks = child};
-      assert_int_equal(vxm_parallel_asked(context, TASKS, count_task, &c, &error), VXM_OK);
+      assert_int_equal(vxm_parallel_cancellable(context, TASKS, count_task, &c, &error), VXM_OK);
       assert_int_equal(atomic_load(&c.done), TASKS);
       vxm_context_destroy(child);
       vxm_context_destroy(context);

@@ -2,19 +2,19 @@
 /** Surfaces between voxel centres: closed and manifold, with each set centre inside, whatever the bits. */
 #include "../repair/solids.h"
 
-#include "remesh/cell_cycles.h"
+#include "remesh/cube_cycles.h"
 #include "remesh/dual_surface.h"
 #include "repair/repair.h"
 
 /** Each crossed link is in one cycle of three or more, and a cycle goes from link to link in a face. */
 static void test_cycles(void **state) {
   (void)state;
-  vxm_cell_cycles cycles[VXM_CELL_CONFIGURATIONS];
-  vxm_cell_cycles_find(cycles);
-  for (unsigned set = 0; set < VXM_CELL_CONFIGURATIONS; set++) {
+  vxm_cube_cycles cycles[VXM_CUBE_CONFIGURATIONS];
+  vxm_cube_cycles_find(cycles);
+  for (unsigned set = 0; set < VXM_CUBE_CONFIGURATIONS; set++) {
     int length[4] = {0};
-    for (int link = 0; link < VXM_CELL_LINKS; link++) {
-      int p = vxm_cell_link_begin(link), q = vxm_cell_link_end(link);
+    for (int link = 0; link < VXM_CUBE_LINKS; link++) {
+      int p = vxm_cube_link_begin(link), q = vxm_cube_link_end(link);
       assert_int_equal(p ^ q, 1 << link / 4);
       bool crossed = (set >> p & 1) != (set >> q & 1);
       assert_int_equal(crossed, cycles[set].cycle[link] != VXM_NO_CYCLE);

@@ -23,7 +23,7 @@ static size_t count_lost(const vxm_soup *before, const vxm_soup *after, size_t l
   size_t count = lost.count;
   if (lost_part != SIZE_MAX)
     assert_true(lost.lost[lost_part]);
-  vxm_lost_parts_free(&lost, before->context);
+  vxm_lost_parts_destroy(&lost, before->context);
   return count;
 }
 

@@ -120,8 +120,8 @@ static void check_rows(vxm_rng *rng, int n, vxm_scalar scalar, bool streaming) {
   check_values(&got, &values, number, before, set, &shape, rows);
   for (int p = 0; p < parts; p++)
     assert_int_equal(seen[p], any[p]);
-  vxm_coverage_flips_free(&part, context);
-  vxm_coverage_flips_free(&all, context);
+  vxm_coverage_flips_destroy(&part, context);
+  vxm_coverage_flips_destroy(&all, context);
   free(got.bytes);
   free(set);
 }

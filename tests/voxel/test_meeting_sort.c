@@ -17,11 +17,11 @@ static vxm_meeting random_meeting(vxm_rng *rng, const vxm_view *view, int64_t si
     lowest[a] = (int64_t)vxm_rng_below(rng, (uint32_t)side + 1) - 1;
   vxm_meeting m = {.offset = {(int32_t)number, 0, 0}};
   if (kind < 7)
-    m.cell = vxm_cell_number(view, VXM_THIN_DOMINANT_LINKS, kind % 3, lowest);
+    m.element = vxm_dual_number(view, VXM_THIN_DOMINANT_LINKS, kind % 3, lowest);
   else if (kind < 9)
-    m.cell = vxm_cell_number(view, VXM_THIN_LINKS, kind % 3, lowest);
+    m.element = vxm_dual_number(view, VXM_THIN_LINKS, kind % 3, lowest);
   else
-    m.cell = vxm_cell_number(view, VXM_THIN_SQUARES, VXM_CELL_SQUARE + (int)vxm_rng_below(rng, 3), lowest);
+    m.element = vxm_dual_number(view, VXM_THIN_SQUARES, VXM_DUAL_SQUARE + (int)vxm_rng_below(rng, 3), lowest);
   return m;
 }
 
@@ -41,11 +41,11 @@ static void check_order(const vxm_meeting *meetings, size_t count) {
   size_t runs = 0;
   assert_non_null(cells);
   for (size_t m = 0; m < count; m++) {
-    bool same = m > 0 && meetings[m].cell == meetings[m - 1].cell;
+    bool same = m > 0 && meetings[m].element == meetings[m - 1].element;
     if (m > 0)
-      assert_true(vxm_cell_stage(meetings[m - 1].cell) <= vxm_cell_stage(meetings[m].cell));
+      assert_true(vxm_dual_stage(meetings[m - 1].element) <= vxm_dual_stage(meetings[m].element));
     if (!same)
-      cells[runs++] = meetings[m].cell;
+      cells[runs++] = meetings[m].element;
   }
   qsort(cells, runs, sizeof *cells, by_cell);
   for (size_t r = 1; r < runs; r++)
@@ -58,7 +58,7 @@ static void check_same(vxm_meeting *meetings, const vxm_meeting *made, size_t co
   qsort(meetings, count, sizeof *meetings, by_number);
   for (size_t m = 0; m < count; m++) {
     assert_int_equal(meetings[m].offset[0], made[m].offset[0]);
-    assert_true(meetings[m].cell == made[m].cell);
+    assert_true(meetings[m].element == made[m].element);
   }
 }
 
@@ -125,7 +125,7 @@ static void check_slabs(vxm_context *own, int threads, size_t count, int64_t sid
     uint64_t least = UINT64_MAX, most = 0;
     check_order(slab->meetings, slab->count);
     for (size_t m = 0; m < slab->count; m++) {
-      const uint64_t voxel = slab->meetings[m].cell & ((UINT64_C(1) << VXM_CELL_VOXEL_BITS) - 1);
+      const uint64_t voxel = slab->meetings[m].element & ((UINT64_C(1) << VXM_DUAL_VOXEL_BITS) - 1);
       least = voxel < least ? voxel : least;
       most = voxel > most ? voxel : most;
       assert_true(at < count);

@@ -90,7 +90,7 @@ static bool meets_something(const thin_mesh *mesh, const vxm_view *view, const t
   for (size_t r = 0; r < records.count && !meets; r++) {
     int64_t ends[8][3];
     bool held;
-    int count = vxm_cell_ends(ends, records.list[r].kind, records.list[r].lowest);
+    int count = vxm_dual_ends(ends, records.list[r].kind, records.list[r].lowest);
     meets = !vxm_view_any_set(view, (const int64_t(*)[3])ends, count, &held) && held;
   }
   free(records.list);

@@ -205,7 +205,7 @@ static vxm_status load_chunks(loading *l, vxm_error *error) {
   l->room = vxm_calloc(context, workers, sizeof *l->room, &local);
   vxm_status status = local.code;
   if (status == VXM_OK)
-    status = vxm_parallel_asked(context, tasks, load_task, l, &local);
+    status = vxm_parallel_cancellable(context, tasks, load_task, l, &local);
   if (status == VXM_OK && l->failed != SIZE_MAX) {
     local = l->error;
     status = local.code;

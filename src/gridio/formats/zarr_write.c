@@ -212,7 +212,7 @@ static vxm_status flush(vxm_values_writer *w, vxm_error *error) {
                 .failed = SIZE_MAX,
                 .error = VXM_ERROR_INIT};
   size_t tasks = (size_t)(vxm_zarr_chunks(&s->array, 1) * vxm_zarr_chunks(&s->array, 2));
-  vxm_status status = vxm_parallel_asked(w->context, tasks, put_task, &f, error);
+  vxm_status status = vxm_parallel_cancellable(w->context, tasks, put_task, &f, error);
   pthread_mutex_destroy(&f.mutex);
   if (status == VXM_OK && f.failed != SIZE_MAX) {
     vxm_error_pass(error, &f.error);

@@ -188,7 +188,7 @@ static vxm_status add_all(builder *b, const vxm_greedy_quads *quads, vxm_error *
   vxm_status status = VXM_OK;
   for (size_t l = 0; l < quads->list_count && status == VXM_OK; l++) {
     const vxm_greedy_quad_list *list = &quads->lists[l];
-    status = vxm_ask(b->soup->context, error);
+    status = vxm_check_cancelled(b->soup->context, error);
     for (size_t r = 0; r < list->count && status == VXM_OK; r++, corner += 4)
       status = add_rectangle(b, &list->items[r], list->axis, corner, error);
   }

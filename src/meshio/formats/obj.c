@@ -404,7 +404,7 @@ vxm_status vxm_obj_read(vxm_soup *soup, const unsigned char *data, size_t size, 
   status = read_statements(&reader, error);
   if (status == VXM_OK)
     status = finish(&reader, error);
-  vxm_obj_colors_free(&reader.colors, soup->context);
+  vxm_obj_colors_destroy(&reader.colors, soup->context);
   vxm_tagger_close(&reader.tagger);
   vxm_tokenizer_close(&reader.scan);
   if (status == VXM_OK)

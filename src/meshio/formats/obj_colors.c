@@ -123,7 +123,7 @@ vxm_status vxm_obj_colors_finish(vxm_obj_colors *colors, vxm_soup *soup, vxm_err
   return VXM_OK;
 }
 
-void vxm_obj_colors_free(vxm_obj_colors *colors, vxm_context *context) {
+void vxm_obj_colors_destroy(vxm_obj_colors *colors, vxm_context *context) {
   vxm_free(context, colors->uvs);
   vxm_free(context, colors->corner_uvs);
 }

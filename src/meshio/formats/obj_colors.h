@@ -27,6 +27,6 @@ vxm_status vxm_obj_colors_library(vxm_soup *soup, const unsigned char *names, si
                                   vxm_error *error);
 /** Hands over what was gathered, before faces are left out. */
 vxm_status vxm_obj_colors_finish(vxm_obj_colors *colors, vxm_soup *soup, vxm_error *error);
-void vxm_obj_colors_free(vxm_obj_colors *colors, vxm_context *context);
+void vxm_obj_colors_destroy(vxm_obj_colors *colors, vxm_context *context);
 
 #endif

@@ -142,7 +142,7 @@ vxm_status vxm_ply_read(vxm_soup *soup, const unsigned char *data, size_t size, 
                                        : "ply binary_little_endian";
     status = read_body(&scan, &header, error);
   }
-  vxm_ply_header_free(&header, soup->context);
+  vxm_ply_header_destroy(&header, soup->context);
   vxm_tokenizer_close(&scan);
   if (status == VXM_OK)
     vxm_soup_trim(soup);

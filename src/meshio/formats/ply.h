@@ -76,7 +76,7 @@ bool vxm_ply_wants_colors(const vxm_soup *soup, const vxm_ply_header *header, co
 
 /** Reads the header; the cursor ends at the first byte of the body. */
 vxm_status vxm_ply_read_header(vxm_tokenizer *scan, vxm_ply_header *header, vxm_error *error);
-void vxm_ply_header_free(vxm_ply_header *header, vxm_context *context);
+void vxm_ply_header_destroy(vxm_ply_header *header, vxm_context *context);
 
 vxm_status vxm_ply_read_text(vxm_tokenizer *scan, const vxm_ply_header *header, vxm_ply_body *body,
                              vxm_error *error);

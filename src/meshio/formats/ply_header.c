@@ -261,7 +261,7 @@ vxm_status vxm_ply_read_header(vxm_tokenizer *scan, vxm_ply_header *header, vxm_
   return settle_roles(scan, header, error);
 }
 
-void vxm_ply_header_free(vxm_ply_header *header, vxm_context *context) {
+void vxm_ply_header_destroy(vxm_ply_header *header, vxm_context *context) {
   vxm_free(context, header->elements);
   vxm_free(context, header->properties);
 }

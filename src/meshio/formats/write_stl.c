@@ -33,7 +33,7 @@ static vxm_status count_facets(const vxm_soup *soup, uint32_t *facets, vxm_error
 /** Vertices that no facet has are not written, and may be anything. */
 static vxm_status check_range(const vxm_soup *soup, vxm_error *error) {
   for (size_t i = 0; i < soup->corner_count; i++) {
-    vxm_status status = vxm_ask_at(i, soup->context, error);
+    vxm_status status = vxm_check_cancelled_at(i, soup->context, error);
     if (status != VXM_OK)
       return status;
     for (size_t c = 0; c < 3; c++) {

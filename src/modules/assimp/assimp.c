@@ -112,7 +112,7 @@ static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, 
   if (status == VXM_OK)
     apply_unit(soup, unit);
   vxm_free(soup->context, archive);
-  vxm_gltf_free(&gltf, soup->context);
+  vxm_gltf_destroy(&gltf, soup->context);
   return status;
 }
 

@@ -139,7 +139,7 @@ static vxm_status prepare_root(vxm_gltf *out, json_t *root, const layout *parts,
   vxm_status status = vxm_gltf_check_required(root, request->name, error);
   if (status == VXM_OK)
     status = vxm_gltf_make_floats(&out->floats, &out->floats_size, root, &buffers, warnings, error);
-  vxm_gltf_buffers_free(&buffers);
+  vxm_gltf_buffers_destroy(&buffers);
   return status == VXM_OK && out->floats ? rebuild(out, root, parts, request, context, error) : status;
 }
 
@@ -155,11 +155,11 @@ vxm_status vxm_gltf_prepare(vxm_gltf *out, const vxm_reader_request *request, vx
     status = prepare_root(out, root, &parts, request, context, warnings, error);
   json_decref(root);
   if (status != VXM_OK)
-    vxm_gltf_free(out, context);
+    vxm_gltf_destroy(out, context);
   return status;
 }
 
-void vxm_gltf_free(vxm_gltf *gltf, vxm_context *context) {
+void vxm_gltf_destroy(vxm_gltf *gltf, vxm_context *context) {
   vxm_free(context, gltf->data);
   vxm_free(context, gltf->floats);
   *gltf = (vxm_gltf){0};

@@ -10,7 +10,7 @@
 /** The buffer that holds what was made of whole numbers, for the file that asks for it by this name. */
 #define VXM_GLTF_FLOATS "voxmend-floats.bin"
 
-/** The file for Assimp, and a buffer more. Free with vxm_gltf_free. */
+/** The file for Assimp, and a buffer more. Free with vxm_gltf_destroy. */
 typedef struct vxm_gltf {
   unsigned char *data; /**< NULL where Assimp can read the file as it is */
   size_t size;
@@ -28,6 +28,6 @@ void vxm_gltf_start(void);
  */
 vxm_status vxm_gltf_prepare(vxm_gltf *out, const vxm_reader_request *request, vxm_context *context,
                             vxm_warnings *warnings, vxm_error *error);
-void vxm_gltf_free(vxm_gltf *gltf, vxm_context *context);
+void vxm_gltf_destroy(vxm_gltf *gltf, vxm_context *context);
 
 #endif

@@ -51,7 +51,7 @@ static const vxm_gltf_buffer *take_buffer(vxm_gltf_buffers *buffers, size_t inde
   return buffer->data ? buffer : NULL;
 }
 
-void vxm_gltf_buffers_free(vxm_gltf_buffers *buffers) {
+void vxm_gltf_buffers_destroy(vxm_gltf_buffers *buffers) {
   for (size_t b = 0; b < buffers->count; b++)
     vxm_free(buffers->context, buffers->list[b].owned);
   vxm_free(buffers->context, buffers->list);

@@ -16,7 +16,7 @@ typedef struct vxm_gltf_buffer {
 } vxm_gltf_buffer;
 
 /** Buffers are read when they are first needed. Start from the first five members, end with
- * vxm_gltf_buffers_free. */
+ * vxm_gltf_buffers_destroy. */
 typedef struct vxm_gltf_buffers {
   const json_t *root;
   const vxm_reader_request *request;
@@ -49,6 +49,6 @@ const char *vxm_gltf_find_elements(vxm_gltf_elements *out, vxm_gltf_buffers *buf
 /** Number `component` of an element, as the file means it. */
 float vxm_gltf_number(const vxm_gltf_elements *elements, size_t element, unsigned component);
 
-void vxm_gltf_buffers_free(vxm_gltf_buffers *buffers);
+void vxm_gltf_buffers_destroy(vxm_gltf_buffers *buffers);
 
 #endif

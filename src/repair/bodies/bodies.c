@@ -46,7 +46,7 @@ static void *scratch(parting *p, size_t count, size_t size) {
 
 /** Asks now and then whether to go on. */
 static bool goes_on(parting *p, size_t step) {
-  return vxm_ask_at(step, p->state->context, &p->error) == VXM_OK;
+  return vxm_check_cancelled_at(step, p->state->context, &p->error) == VXM_OK;
 }
 
 /* ---- Which groups ---- */
@@ -267,7 +267,7 @@ static vxm_status add_vertices(vxm_soup *out, claim *claims, size_t count, const
     const double *x = vxm_position(soup, v);
     status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
     if (status == VXM_OK)
-      status = vxm_ask_at(v, soup->context, error);
+      status = vxm_check_cancelled_at(v, soup->context, error);
   }
   for (size_t i = 0; i < count && status == VXM_OK; i++) {
     const double *x = vxm_position(soup, claims[i].vertex);
@@ -521,7 +521,7 @@ static vxm_status part(vxm_repair_state *state, bool mixed, bool *changed, vxm_e
   vxm_free(state->context, p.copies);
   vxm_free(state->context, p.asked);
   vxm_free(state->context, touches);
-  vxm_edge_groups_free(&p.groups, state->context);
+  vxm_edge_groups_destroy(&p.groups, state->context);
   if (!done)
     vxm_error_pass(error, &p.error);
   return done ? VXM_OK : p.error.code;

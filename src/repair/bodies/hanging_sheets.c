@@ -33,7 +33,7 @@ static void *scratch(cutting *c, size_t count, size_t size) {
 
 /** Asks now and then whether to go on. */
 static bool goes_on(cutting *c, size_t step) {
-  return vxm_ask_at(step, c->state->context, &c->error) == VXM_OK;
+  return vxm_check_cancelled_at(step, c->state->context, &c->error) == VXM_OK;
 }
 
 /** Sides along the edge that begins at a corner; 0 if there is none. */
@@ -318,7 +318,7 @@ vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_e
   vxm_free(state->context, c.sheet);
   vxm_free(state->context, c.marks);
   vxm_free(state->context, c.patch);
-  vxm_edge_groups_free(&c.groups, state->context);
+  vxm_edge_groups_destroy(&c.groups, state->context);
   *added = (int64_t)(state->soup->vertex_count - before);
   if (*added > 0)
     vxm_repair_state_touch(state);

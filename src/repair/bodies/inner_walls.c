@@ -2,6 +2,7 @@
 #include "repair/bodies/inner_walls.h"
 
 #include "mesh/geometry.h"
+#include "mesh/point_in_mesh.h"
 #include "repair/manifold/radial_sort.h"
 #include "repair/state/edge_groups.h"
 
@@ -30,6 +31,7 @@ typedef struct walling {
   vxm_radial_side *at_edge;
   size_t *space;  /**< twice per face, of its front and its back: another side at the same space, or itself */
   double *volume; /**< the same, of the side that stands for a space: what the sides look away from */
+  size_t *skin_begin, *skin; /**< per group: where its skin begins in `skin`; one more */
 } walling;
 
 static finding *finding_of(const walling *w, size_t face) {
@@ -104,7 +106,7 @@ static vxm_status find_spaces(walling *w, vxm_error *error) {
     w->space[i] = i;
   for (size_t e = 0; status == VXM_OK && e < w->state->edges.count; e++) {
     join_at(w, &w->edges[e], w->at_edge + w->begin[e], w->begin[e + 1] - w->begin[e]);
-    status = vxm_ask_at(e, w->state->context, error);
+    status = vxm_check_cancelled_at(e, w->state->context, error);
   }
   return status;
 }
@@ -147,6 +149,72 @@ static void find_rims(walling *w) {
   }
 }
 
+/* ---- Whether walls lie within the skin ---- */
+
+/** The faces of each group that have just one side which looks out, one group behind the other. */
+static vxm_status list_skins(walling *w, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  const size_t faces = w->soup->face_count, groups = w->groups.count;
+  w->skin_begin = vxm_repair_state_scratch(w->state, groups + 1, sizeof *w->skin_begin, &status, error);
+  if (w->skin_begin)
+    w->skin = vxm_repair_state_scratch(w->state, faces, sizeof *w->skin, &status, error);
+  if (status != VXM_OK)
+    return status;
+  for (size_t f = 0; f < faces; f++)
+    w->skin_begin[w->groups.of_face[f]] += looks_out(w, f, 0) != looks_out(w, f, 1);
+  for (size_t g = 0; g < groups; g++)
+    w->skin_begin[g + 1] += w->skin_begin[g]; /* where the skin of each ends, so far */
+  for (size_t f = faces; f-- > 0;)
+    if (looks_out(w, f, 0) != looks_out(w, f, 1))
+      w->skin[--w->skin_begin[w->groups.of_face[f]]] = f;
+  return VXM_OK;
+}
+
+/** Whether most of the rays from the middle of a wall find it within the skin. */
+static vxm_status is_within(bool *within, vxm_point_in_mesh *skin, size_t wall, vxm_error *error) {
+  size_t count;
+  const uint32_t *corner = vxm_face(skin->soup, wall, &count);
+  double middle[3] = {0, 0, 0};
+  int votes = 0;
+  for (int c = 0; c < 3; c++)
+    for (int a = 0; a < 3; a++)
+      middle[a] += vxm_position(skin->soup, corner[c])[a] * skin->scale / 3;
+  vxm_status status = VXM_OK;
+  for (int axis = 0, of_axis = 0; axis < 3 && status == VXM_OK; axis++, votes += of_axis)
+    status = vxm_point_in_mesh_vote(skin, middle, axis, &of_axis, error);
+  *within = votes > 3;
+  return status;
+}
+
+/** Groups that cut through themselves bound other spaces than the order about their edges tells: walls may
+ * come to lie outside. */
+static vxm_status check_walls(walling *w, const uint8_t *remove, vxm_error *error) {
+  vxm_status status = list_skins(w, error);
+  vxm_point_in_mesh *skins = NULL;
+  if (status == VXM_OK)
+    skins = vxm_repair_state_scratch(w->state, w->groups.count, sizeof *skins, &status, error);
+  for (size_t f = 0; f < w->soup->face_count && status == VXM_OK; f++) {
+    const size_t g = w->groups.of_face[f];
+    bool within = false;
+    if (!remove[f] || w->findings[g].unclear)
+      continue;
+    if (!skins[g].soup) {
+      skins[g] = (vxm_point_in_mesh){.soup = w->soup,
+                                     .faces = w->skin + w->skin_begin[g],
+                                     .face_count = w->skin_begin[g + 1] - w->skin_begin[g],
+                                     .scale = w->frame.scale};
+      vxm_point_in_mesh_find_box(&skins[g]);
+    }
+    status = is_within(&within, &skins[g], f, error);
+    w->findings[g].unclear |= !within;
+  }
+  for (size_t g = 0; skins && g < w->groups.count; g++)
+    if (skins[g].soup)
+      vxm_point_in_mesh_release(&skins[g]);
+  vxm_free(w->state->context, skins);
+  return status;
+}
+
 /* ---- What becomes of the faces ---- */
 
 static bool is_divided(const walling *w, size_t face) {
@@ -157,6 +225,8 @@ static bool is_divided(const walling *w, size_t face) {
 /** Marks the walls; returns whether there are any. */
 static bool mark_walls(walling *w, uint8_t *remove) {
   bool any = false;
+  for (size_t g = 0; g < w->groups.count; g++)
+    w->findings[g].walls = false;
   for (size_t f = 0; f < w->soup->face_count; f++) {
     remove[f] = is_divided(w, f) && !looks_out(w, f, 0) && !looks_out(w, f, 1) &&
                 !vxm_repair_state_guards(w->state, f);
@@ -207,6 +277,8 @@ static vxm_status leave_skin(walling *w, bool *changed, vxm_error *error) {
   vxm_status status = VXM_OK;
   uint8_t *remove = vxm_repair_state_scratch(w->state, w->soup->face_count, sizeof *remove, &status, error);
   if (remove && mark_walls(w, remove))
+    status = check_walls(w, remove, error);
+  if (remove && status == VXM_OK && mark_walls(w, remove))
     status = turn_skin(w, error);
   if (remove && status == VXM_OK) {
     vxm_repair_state_note_marked(w->state, VXM_PASS_INNER_WALLS, remove);
@@ -250,11 +322,13 @@ vxm_status vxm_pass_inner_walls(vxm_repair_state *state, bool *changed, vxm_erro
   vxm_repair_state_extent(state, &extent);
   walling w = {.state = state, .soup = state->soup, .frame = vxm_unit_scale_of(extent.bounds)};
   status = leave_walls_out(&w, changed, error);
+  vxm_free(state->context, w.skin);
+  vxm_free(state->context, w.skin_begin);
   vxm_free(state->context, w.volume);
   vxm_free(state->context, w.space);
   vxm_free(state->context, w.at_edge);
   vxm_free(state->context, w.begin);
   vxm_free(state->context, w.findings);
-  vxm_edge_groups_free(&w.groups, state->context);
+  vxm_edge_groups_destroy(&w.groups, state->context);
   return status;
 }

@@ -18,8 +18,8 @@
  * chambers are filled; cavities in groups of their own are not touched.
  *
  * A group stays as it is where a face that looks out has an edge to itself, as sheets and open bodies do;
- * where faces lie upon each other at an edge; and where there is not just one outer space, as where faces cut
- * through each other.
+ * where faces lie upon each other at an edge; and where there is not just one outer space, or a wall does not
+ * lie within the skin, as where faces cut through each other.
  *
  * That happens at VXM_LEVEL_CLOSED and above, and before a mesh is voxelized (state->divides).
  *

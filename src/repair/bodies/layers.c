@@ -20,7 +20,7 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   uint8_t *count = pair ? vxm_repair_state_scratch(l->state, edges, sizeof *count, &status, error) : NULL;
   for (size_t f = 0; status == VXM_OK && f < soup->face_count; f++) {
     l->patch[f] = f;
-    status = vxm_ask_at(f, l->state->context, error);
+    status = vxm_check_cancelled_at(f, l->state->context, error);
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1] && is_asked(l, f); c++) {
       size_t e = l->groups->sides[c];
       if (e == VXM_NO_EDGE || count[e] > 2)
@@ -158,7 +158,7 @@ static vxm_status ask_again(vxm_layers *l, const uint8_t *bound, size_t *size, i
 static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_face_set_side *sets, size_t *size,
                               int32_t *reach, vxm_error *error) {
   size_t count = list_samples(l, bound, sets, size);
-  vxm_status status = vxm_ask(l->state->context, error);
+  vxm_status status = vxm_check_cancelled(l->state->context, error);
   if (status == VXM_OK)
     status = vxm_face_set_sides_find(sets, count, l->state, l->groups, bound, true, error);
   if (status != VXM_OK || take_all(l, sets, count, reach))

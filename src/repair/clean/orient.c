@@ -47,7 +47,7 @@ static bool is_consistent(const orienting *o) {
 
 /** To be asked at every so many steps: false if the work has been cancelled. */
 static bool goes_on(orienting *o, size_t step) {
-  return vxm_ask_at(step, o->state->context, &o->error) == VXM_OK;
+  return vxm_check_cancelled_at(step, o->state->context, &o->error) == VXM_OK;
 }
 
 static bool pair_faces(orienting *o) {

@@ -91,7 +91,7 @@ static vxm_status join_triangles(aligning *a, size_t *first, vxm_error *error) {
   for (size_t f = 0; f < a->soup->face_count; f++)
     a->parent[f] = f;
   for (size_t f = 0; f < a->soup->face_count && status == VXM_OK; f++) {
-    status = vxm_ask_at(f, a->state->context, error);
+    status = vxm_check_cancelled_at(f, a->state->context, error);
     for (uint64_t c = a->soup->offsets[f]; is_triangle(a, f) && c < a->soup->offsets[f + 1]; c++) {
       uint32_t e = a->sides[c];
       if (e == VXM_NO_EDGE || a->edges[e].count != 2 || a->edges[e].forward != 1)
@@ -401,7 +401,7 @@ vxm_status vxm_align_diagonals(vxm_repair_state *state, bool *changed, vxm_error
   status = align(&a, changed, error);
   for (int i = 0; i < 2; i++)
     vxm_free(state->context, a.border[i]);
-  vxm_edge_groups_free(&a.groups, state->context);
+  vxm_edge_groups_destroy(&a.groups, state->context);
   vxm_free(state->context, a.again);
   vxm_free(state->context, a.sums);
   vxm_free(state->context, a.members);

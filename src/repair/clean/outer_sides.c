@@ -71,7 +71,7 @@ static void join_there(turning *t, size_t face, size_t edge, bool forward) {
 static vxm_status for_each_side(turning *t, side_fn visit, vxm_error *error) {
   vxm_status status = VXM_OK;
   for (size_t f = 0; f < t->soup->face_count && status == VXM_OK; f++) {
-    status = vxm_ask_at(f, t->state->context, error);
+    status = vxm_check_cancelled_at(f, t->state->context, error);
     for (uint64_t c = t->soup->offsets[f]; c < t->soup->offsets[f + 1] && t->counts[f]; c++)
       if (t->sides[c] != VXM_NO_EDGE)
         visit(t, f, t->sides[c], t->soup->indices[c] == t->state->edges.edges[t->sides[c]].a);

@@ -315,6 +315,6 @@ vxm_status vxm_repeated_faces_mark(vxm_repair_state *state, const vxm_copies *co
   vxm_free(state->context, d.parent);
   vxm_free(state->context, d.keep);
   vxm_free(state->context, d.kinds);
-  vxm_edge_groups_free(&d.groups, state->context);
+  vxm_edge_groups_destroy(&d.groups, state->context);
   return status;
 }

@@ -35,7 +35,7 @@ vxm_status vxm_before_union_keep(vxm_before_union *out, const vxm_repair_state *
   return status != VXM_OK ? status : copy(&out->soup, &out->turned, state->soup, state->turned, error);
 }
 
-void vxm_before_union_free(vxm_before_union *kept, vxm_context *context) {
+void vxm_before_union_destroy(vxm_before_union *kept, vxm_context *context) {
   vxm_free(context, kept->turned);
   vxm_soup_destroy(kept->soup);
   *kept = (vxm_before_union){.soup = NULL};

@@ -14,7 +14,7 @@ typedef struct vxm_before_union {
 
 /** Takes a copy. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_before_union_keep(vxm_before_union *out, const vxm_repair_state *state, vxm_error *error);
-void vxm_before_union_free(vxm_before_union *kept, vxm_context *context);
+void vxm_before_union_destroy(vxm_before_union *kept, vxm_context *context);
 
 /** Goes back to the copy. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_union *kept, vxm_error *error);

@@ -189,7 +189,7 @@ static vxm_status collapse(collapsing *c, double diagonal, int64_t *total, vxm_e
   vxm_status status = VXM_OK;
   *total = 0;
   for (int round = 0; round < ROUNDS && status == VXM_OK; round++) {
-    status = vxm_ask(c->state->context, error);
+    status = vxm_check_cancelled(c->state->context, error);
     if (status == VXM_OK)
       status = vxm_repair_state_edges(c->state, error);
     if (status != VXM_OK || !list_faces(c))

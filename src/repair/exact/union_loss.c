@@ -100,7 +100,7 @@ static int64_t count_lost(looking *l, const vxm_soup *before, const vxm_soup *af
   if (l->error.code == VXM_OK)
     vxm_lost_parts_find(&lost, before, after, &l->error);
   int64_t count = (int64_t)lost.count;
-  vxm_lost_parts_free(&lost, l->context);
+  vxm_lost_parts_destroy(&lost, l->context);
   return count;
 }
 

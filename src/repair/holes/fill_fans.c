@@ -245,7 +245,7 @@ static bool plan(closing *c) {
 static void release(closing *c) {
   vxm_context *context = c->state->context;
   if (c->caps.soup)
-    vxm_caps_free(&c->caps);
+    vxm_caps_destroy(&c->caps);
   if (c->loops.context)
     vxm_boundary_loops_destroy(&c->loops);
   vxm_free(context, c->cap_area);

@@ -15,8 +15,8 @@ enum { HALVINGS = 8, ROUNDS = 8 };
 static const double SHARP = 1e-9;
 
 /** Vertices of plates move by multiples of this part of the distance, so that plates which are to lie in one
- * plane do, whatever their normals were rounded to; a union leaves slivers between them else. Were they put on
- * a lattice, plates would not be as thick as they are to be. */
+ * plane do, whatever their normals were rounded to; a union leaves slivers between them else. Were they put
+ * on a lattice, plates would not be as thick as they are to be. */
 static const double STEP = 0x1p-32;
 
 /** What a cut across a crease costs, as angles about the vertex times squared distances: rather the flat side
@@ -111,7 +111,7 @@ static vxm_status part_feet(offsetting *o, vxm_error *error) {
     for (int e = 0; e < 2 && vxm_sheet_is_rim(sides, front); e++)
       if (ends_at_back(o, front, ends[e], &all))
         cut_walk(o, front, ends[e], &all);
-    status = vxm_ask_at(front / 2, o->out->context, error);
+    status = vxm_check_cancelled_at(front / 2, o->out->context, error);
   }
   return status;
 }
@@ -162,7 +162,7 @@ static vxm_status number_corners(offsetting *o, vxm_error *error) {
       o->vector[o->out->count] = vector_of(o, c, sums);
       o->place[o->out->count++] = vxm_sheet_vertex(o->sides, c);
     }
-    status = vxm_ask_at(c, o->out->context, error);
+    status = vxm_check_cancelled_at(c, o->out->context, error);
   }
   return status;
 }
@@ -235,13 +235,13 @@ vxm_status vxm_sheet_offsets_find(vxm_sheet_offsets *out, vxm_sheet_sides *sides
   vxm_free(context, o.vector);
   vxm_free(context, o.normal);
   if (local.code != VXM_OK) {
-    vxm_sheet_offsets_free(out);
+    vxm_sheet_offsets_destroy(out);
     vxm_error_pass(error, &local);
   }
   return local.code;
 }
 
-void vxm_sheet_offsets_free(vxm_sheet_offsets *offsets) {
+void vxm_sheet_offsets_destroy(vxm_sheet_offsets *offsets) {
   vxm_free(offsets->context, offsets->positions);
   vxm_free(offsets->context, offsets->vertex);
   *offsets = (vxm_sheet_offsets){.context = offsets->context};

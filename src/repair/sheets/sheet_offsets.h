@@ -23,6 +23,6 @@ typedef struct vxm_sheet_offsets {
  */
 vxm_status vxm_sheet_offsets_find(vxm_sheet_offsets *out, vxm_sheet_sides *sides, double distance,
                                   double scale, vxm_error *error);
-void vxm_sheet_offsets_free(vxm_sheet_offsets *offsets);
+void vxm_sheet_offsets_destroy(vxm_sheet_offsets *offsets);
 
 #endif

@@ -29,7 +29,7 @@ static vxm_status list_sides(sorting *s, vxm_error *error) {
     vxm_radial_side *side = &s->sides[s->begin[e] + --s->edges.edges[e].count];
     *side = (vxm_radial_side){
         .side = (uint32_t)c, .face = (uint32_t)(c / 3), .forward = soup->indices[c] == s->edges.edges[e].a};
-    status = vxm_ask_at(c, soup->context, error);
+    status = vxm_check_cancelled_at(c, soup->context, error);
   }
   return status;
 }
@@ -67,19 +67,19 @@ vxm_status vxm_sheet_sides_build(vxm_sheet_sides *out, const vxm_soup *soup, dou
   if (s.sides)
     list_sides(&s, &local);
   for (size_t e = 0; e < s.edges.count && local.code == VXM_OK; e++)
-    if (vxm_ask_at(e, soup->context, &local) == VXM_OK)
+    if (vxm_check_cancelled_at(e, soup->context, &local) == VXM_OK)
       see_next(&s, e);
   vxm_free(soup->context, s.sides);
   vxm_free(soup->context, s.begin);
   vxm_edges_destroy(&s.edges);
   if (local.code != VXM_OK) {
-    vxm_sheet_sides_free(out);
+    vxm_sheet_sides_destroy(out);
     vxm_error_pass(error, &local);
   }
   return local.code;
 }
 
-void vxm_sheet_sides_free(vxm_sheet_sides *sides) {
+void vxm_sheet_sides_destroy(vxm_sheet_sides *sides) {
   vxm_free(sides->soup->context, sides->cut);
   vxm_free(sides->soup->context, sides->across);
   sides->cut = NULL;

@@ -31,7 +31,7 @@ typedef struct vxm_sheet_sides {
  *         VXM_ERROR_CANCELLED
  */
 vxm_status vxm_sheet_sides_build(vxm_sheet_sides *out, const vxm_soup *soup, double scale, vxm_error *error);
-void vxm_sheet_sides_free(vxm_sheet_sides *sides);
+void vxm_sheet_sides_destroy(vxm_sheet_sides *sides);
 
 /** The number of corner j + 1 where `corner` is j, or of j - 1, on the same side. */
 static inline uint32_t vxm_sheet_next(uint32_t corner) {

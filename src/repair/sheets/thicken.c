@@ -51,7 +51,7 @@ static bool add_triangles(thickening *t, const uint8_t *faces, const uint32_t *w
   for (size_t f = 0; f < t->from->face_count && done; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(t->from, f, &count), *pieces = corner;
-    done = vxm_ask_at(f, t->from->context, &t->error) == VXM_OK;
+    done = vxm_check_cancelled_at(f, t->from->context, &t->error) == VXM_OK;
     if (!faces[f] || count < 3 || !done)
       continue;
     if (count > 3)
@@ -215,9 +215,9 @@ vxm_status vxm_thicken(vxm_soup *out, uint64_t **origin, const vxm_soup *soup, c
                   .error = VXM_ERROR_INIT};
   bool done = thicken(&t, faces, thickness);
   vxm_free(context, t.after);
-  vxm_sheet_offsets_free(&t.offsets);
+  vxm_sheet_offsets_destroy(&t.offsets);
   if (t.sides.soup)
-    vxm_sheet_sides_free(&t.sides);
+    vxm_sheet_sides_destroy(&t.sides);
   vxm_free(context, t.source);
   vxm_soup_destroy(t.triangles);
   if (!done)

@@ -7,7 +7,7 @@ static vxm_status join_faces(const vxm_edge_groups *g, const vxm_soup *soup, siz
   for (size_t f = 0; f < soup->face_count; f++)
     g->of_face[f] = f;
   for (size_t f = 0; f < soup->face_count; f++) {
-    vxm_status status = vxm_ask_at(f, soup->context, error);
+    vxm_status status = vxm_check_cancelled_at(f, soup->context, error);
     if (status != VXM_OK)
       return status;
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
@@ -43,7 +43,7 @@ static vxm_status look_at_edges(const vxm_edge_groups *g, const vxm_repair_state
   for (size_t i = 0; i < g->count; i++)
     g->groups[i] = (vxm_edge_group){true, true, true};
   for (size_t f = 0; f < soup->face_count; f++) {
-    vxm_status status = vxm_ask_at(f, soup->context, error);
+    vxm_status status = vxm_check_cancelled_at(f, soup->context, error);
     if (status != VXM_OK)
       return status;
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
@@ -82,7 +82,7 @@ vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *state, v
   return status;
 }
 
-void vxm_edge_groups_free(vxm_edge_groups *groups, vxm_context *context) {
+void vxm_edge_groups_destroy(vxm_edge_groups *groups, vxm_context *context) {
   vxm_free(context, groups->groups);
   vxm_free(context, groups->of_face);
   *groups = (vxm_edge_groups){0};

@@ -25,7 +25,7 @@ typedef struct vxm_edge_groups {
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; the groups are to be freed
  * in any case */
 vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *state, vxm_error *error);
-void vxm_edge_groups_free(vxm_edge_groups *groups, vxm_context *context);
+void vxm_edge_groups_destroy(vxm_edge_groups *groups, vxm_context *context);
 
 /** The representative of a set, with path halving; `parent` of a new set is itself. */
 static inline size_t vxm_set_of(size_t *parent, size_t member) {

@@ -59,30 +59,13 @@ static vxm_point_in_mesh gather(const asking *a, bool balanced, size_t *sorted) 
   return (vxm_point_in_mesh){.soup = a->state->soup, .faces = sorted, .face_count = count, .scale = a->scale};
 }
 
-static void find_box(vxm_point_in_mesh *inside) {
-  for (int a = 0; a < 3; a++) {
-    inside->box[a] = INFINITY;
-    inside->box[a + 3] = -INFINITY;
-  }
-  for (size_t i = 0; i < inside->face_count; i++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);
-    for (size_t c = 0; c < count; c++)
-      for (int a = 0; a < 3; a++) {
-        double x = vxm_position(inside->soup, corner[c])[a] * inside->scale;
-        inside->box[a] = fmin(inside->box[a], x);
-        inside->box[a + 3] = fmax(inside->box[a + 3], x);
-      }
-  }
-}
-
 /** What may be around a group: all that are balanced, and if `open`, the others as well. */
 static void list_surroundings(asking *a, bool open) {
   a->all = gather(a, true, a->sorted);
-  find_box(&a->all);
+  vxm_point_in_mesh_find_box(&a->all);
   if (open) {
     a->open = gather(a, false, a->sorted + a->all.face_count);
-    find_box(&a->open);
+    vxm_point_in_mesh_find_box(&a->open);
   }
 }
 
@@ -231,7 +214,7 @@ static vxm_status ask_group(keyed_set *sets, size_t count, asking *a, vxm_error 
                               .faces = a->faces + a->begin[group],
                               .face_count = a->begin[group + 1] - a->begin[group],
                               .scale = a->scale};
-  find_box(&inside);
+  vxm_point_in_mesh_find_box(&inside);
   vxm_status status = find_around(sets, count, a, &inside, &around, error);
   if (inside.face_count == 0 && around == 0)
     return status;

@@ -267,7 +267,7 @@ static void keep_lines(vxm_line_crossings *list, size_t step) {
 static bool thin(asking *a) {
   if (a->tests >= a->ask_after) {
     a->ask_after = a->tests + ASK_TESTS;
-    if (vxm_ask(a->context, &a->error) != VXM_OK)
+    if (vxm_check_cancelled(a->context, &a->error) != VXM_OK)
       return false;
   }
   if (a->step >= a->line_count ||
@@ -338,7 +338,7 @@ static bool compare(asking *a) {
     const vxm_crossing *end = c;
     while (end < c_end && end->line == b->line)
       end++;
-    if (vxm_ask(a->context, &a->error) != VXM_OK)
+    if (vxm_check_cancelled(a->context, &a->error) != VXM_OK)
       return false;
     if (is_clear(c, end)) {
       if (vxm_spans_find(&a->covered, a->context, c, end, &a->error) != VXM_OK)
@@ -434,7 +434,7 @@ vxm_status vxm_lost_parts_find(vxm_lost_parts *out, const vxm_soup *before, cons
   return done ? VXM_OK : a.error.code;
 }
 
-void vxm_lost_parts_free(vxm_lost_parts *lost, vxm_context *context) {
+void vxm_lost_parts_destroy(vxm_lost_parts *lost, vxm_context *context) {
   vxm_free(context, lost->lost);
   vxm_free(context, lost->face_part);
   *lost = (vxm_lost_parts){0};

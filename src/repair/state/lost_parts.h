@@ -20,7 +20,7 @@ typedef struct vxm_lost_parts {
  * with an end that is inside tells nothing. A part is lost if more than a hundredth of its inside, of one
  * kind or the other, is inside no component any more.
  *
- * @param[out] out freed with vxm_lost_parts_free in any case
+ * @param[out] out freed with vxm_lost_parts_destroy in any case
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Time is about linear in the faces of both. Of very many components only some are asked,
@@ -28,6 +28,6 @@ typedef struct vxm_lost_parts {
  */
 vxm_status vxm_lost_parts_find(vxm_lost_parts *out, const vxm_soup *before, const vxm_soup *after,
                                vxm_error *error);
-void vxm_lost_parts_free(vxm_lost_parts *lost, vxm_context *context);
+void vxm_lost_parts_destroy(vxm_lost_parts *lost, vxm_context *context);
 
 #endif

@@ -92,7 +92,7 @@ vxm_status vxm_provenance_start(vxm_provenance *provenance, const vxm_soup *soup
   }
   vxm_status status = VXM_OK;
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
-    status = vxm_ask_at(f, provenance->context, error);
+    status = vxm_check_cancelled_at(f, provenance->context, error);
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
       provenance->vertex_part[soup->indices[c]] = soup->face_parts[f];
   }
@@ -211,7 +211,7 @@ vxm_status vxm_provenance_settle(vxm_provenance *provenance, const vxm_soup *sou
     provenance->most[i] = 0;
   for (size_t v = 0; v < provenance->vertex_count; v++) {
     const double *from = provenance->from + 3 * v, *to = vxm_position(soup, provenance->into[v]);
-    vxm_status status = vxm_ask_at(v, provenance->context, error);
+    vxm_status status = vxm_check_cancelled_at(v, provenance->context, error);
     if (status != VXM_OK)
       return status;
     double distance = vxm_length3(to[0] - from[0], to[1] - from[1], to[2] - from[2]);

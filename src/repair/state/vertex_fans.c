@@ -11,7 +11,7 @@ static const uint32_t NONE = UINT32_MAX;
 static vxm_status join_corners(const vxm_soup *soup, const uint32_t *sides, uint32_t (*first)[2],
                                uint32_t *parent, vxm_error *error) {
   for (size_t f = 0; f < soup->face_count; f++) {
-    vxm_status status = vxm_ask_at(f, soup->context, error);
+    vxm_status status = vxm_check_cancelled_at(f, soup->context, error);
     if (status != VXM_OK)
       return status;
     size_t count, begin = (size_t)soup->offsets[f];
@@ -117,7 +117,7 @@ static vxm_status are_whole(bool *out, const vxm_soup *soup, const uint32_t *adj
       *out = *left == 0 || goes_round(soup, adjacent, (place){c, f}, *left);
       *left = 0; /* it was looked at */
     }
-    status = vxm_ask_at(f, soup->context, &local);
+    status = vxm_check_cancelled_at(f, soup->context, &local);
   }
   vxm_free(soup->context, corners);
   status = corners ? status : local.code;

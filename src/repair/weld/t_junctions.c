@@ -164,7 +164,7 @@ static bool measure_room(search *s) {
     number[e] = balance_of(s, &edges->edges[e]) != 0 ? next++ : NONE;
   for (size_t f = 0; f < soup->face_count && done; f++) {
     uint64_t begin = soup->offsets[f];
-    done = vxm_ask_at(f, s->state->context, &s->error) == VXM_OK;
+    done = vxm_check_cancelled_at(f, s->state->context, &s->error) == VXM_OK;
     for (uint64_t i = 0; i < 3 && soup->offsets[f + 1] - begin == 3; i++) {
       uint32_t e = edges->sides[begin + i];
       if (e == VXM_NO_EDGE || number[e] == NONE)
@@ -351,7 +351,7 @@ static bool find_all(search *s) {
     if (s->edges[e / 2].balance == 0 || find_along(s, from, (uint32_t)(e / 2), false) == NONE)
       continue;
     bool closes = follow(s, from, (uint32_t)(e / 2));
-    if (s->error.code != VXM_OK || vxm_ask_at(e, s->state->context, &s->error) != VXM_OK)
+    if (s->error.code != VXM_OK || vxm_check_cancelled_at(e, s->state->context, &s->error) != VXM_OK)
       return false;
     if (!closes)
       undo(s);

@@ -147,7 +147,7 @@ static bool divide_all(dividing *d, bool puts) {
   d->faces = d->corners = 0;
   memset(d->seen, 0, d->state->soup->vertex_count * sizeof *d->seen);
   for (size_t f = 0; f < d->state->soup->face_count; f++)
-    if (vxm_ask_at(f, d->state->context, &d->error) != VXM_OK || !divide_face(d, f))
+    if (vxm_check_cancelled_at(f, d->state->context, &d->error) != VXM_OK || !divide_face(d, f))
       return false;
   return true;
 }

@@ -125,11 +125,11 @@ static void allocate(builder *b, vxm_error *error) {
 static vxm_status build(builder *b, vxm_error *error) {
   vxm_band_clusters *made = b->made;
   vxm_context *context = made->context;
-  vxm_status status = vxm_parallel_asked(context, SLICES, make_keys, b, error);
+  vxm_status status = vxm_parallel_cancellable(context, SLICES, make_keys, b, error);
   if (status != VXM_OK)
     return status;
   vxm_sort_keys_above(b->keys, b->scratch, made->triangle_count, VXM_BAND_PLACE_SHIFT);
-  status = vxm_parallel_asked(context, SLICES, find_starts, b, error);
+  status = vxm_parallel_cancellable(context, SLICES, find_starts, b, error);
   if (status != VXM_OK)
     return status;
   for (size_t s = 0; s < SLICES; s++)
@@ -137,7 +137,7 @@ static vxm_status build(builder *b, vxm_error *error) {
   made->clusters = vxm_alloc(context, made->count, sizeof *made->clusters, error);
   if (!made->clusters)
     return error->code;
-  return vxm_parallel_asked(context, SLICES, make_clusters, b, error);
+  return vxm_parallel_cancellable(context, SLICES, make_clusters, b, error);
 }
 
 vxm_status vxm_band_clusters_create(vxm_band_clusters **out, vxm_context *context, const vxm_band_soup *soup,

@@ -129,7 +129,7 @@ static vxm_status make_nodes(builder *b, vxm_error *error) {
   for (b->level = 0; b->level < tree->levels && status == VXM_OK; b->level++)
     for (size_t i = 0; i < tree->node_count[b->level] && status == VXM_OK; i++) {
       make_node(b, i);
-      status = vxm_ask_at(i, tree->context, error);
+      status = vxm_check_cancelled_at(i, tree->context, error);
     }
   return status;
 }
@@ -175,9 +175,9 @@ vxm_status vxm_distance_bvh_create(vxm_distance_bvh **out, vxm_context *context,
     allocate(&b, &local);
   }
   bool done = local.code == VXM_OK &&
-              vxm_parallel_asked(context, SLICES, make_centroids, &b, &local) == VXM_OK &&
+              vxm_parallel_cancellable(context, SLICES, make_centroids, &b, &local) == VXM_OK &&
               vxm_spatial_sort(b.centroids, count, context, &local) == VXM_OK &&
-              vxm_parallel_asked(context, SLICES, make_packs, &b, &local) == VXM_OK &&
+              vxm_parallel_cancellable(context, SLICES, make_packs, &b, &local) == VXM_OK &&
               make_nodes(&b, &local) == VXM_OK;
   if (done)
     *out = tree;

@@ -126,7 +126,7 @@ static vxm_status fill(vxm_surface_tree *tree, vxm_spatial_point *spots, vxm_sur
     spots[i].index = (uint32_t)i;
     for (int a = 0; a < 3; a++)
       spots[i].at[a] = (float)(at[0][a] + at[1][a] + at[2][a]);
-    status = vxm_ask_at(i, tree->context, error);
+    status = vxm_check_cancelled_at(i, tree->context, error);
   }
   if (status == VXM_OK)
     status = vxm_spatial_sort(spots, tree->count, tree->context, error);
@@ -135,7 +135,7 @@ static vxm_status fill(vxm_surface_tree *tree, vxm_spatial_point *spots, vxm_sur
     vxm_closest_triangle_make(&tree->triangles[i], (const double(*)[3])at);
     tree->discs[i] = disc_of(&tree->triangles[i]);
     tree->numbers[i] = spots[i].index;
-    status = vxm_ask_at(i, tree->context, error);
+    status = vxm_check_cancelled_at(i, tree->context, error);
   }
   if (status == VXM_OK)
     make_boxes(tree);

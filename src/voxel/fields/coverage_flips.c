@@ -40,7 +40,7 @@ vxm_status vxm_coverage_flips_make(vxm_coverage_flips *flips, vxm_context *conte
   return local.code;
 }
 
-void vxm_coverage_flips_free(vxm_coverage_flips *flips, vxm_context *context) {
+void vxm_coverage_flips_destroy(vxm_coverage_flips *flips, vxm_context *context) {
   vxm_free(context, flips->touched_rows);
   vxm_free(context, flips->touched);
   vxm_free(context, flips->words);

@@ -33,7 +33,7 @@ vxm_coverage_flips vxm_coverage_flips_of(int n, size_t row_length);
 uint64_t vxm_coverage_flips_bytes(const vxm_coverage_flips *flips, size_t rows);
 vxm_status vxm_coverage_flips_make(vxm_coverage_flips *flips, vxm_context *context, size_t rows,
                                    vxm_error *error);
-void vxm_coverage_flips_free(vxm_coverage_flips *flips, vxm_context *context);
+void vxm_coverage_flips_destroy(vxm_coverage_flips *flips, vxm_context *context);
 
 /** Flips the sub-voxels from each place on to the end of its row; places in rows other than those from
  * `first` on are left out. */

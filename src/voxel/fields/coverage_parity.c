@@ -189,9 +189,9 @@ void vxm_coverage_scratch_destroy(vxm_coverage_scratch *of) {
   if (!of)
     return;
   for (size_t w = 0; w < of->count; w++) {
-    vxm_coverage_flips_free(&of->of[w].part, of->context);
-    vxm_coverage_flips_free(&of->of[w].all, of->context);
-    vxm_chain_flips_free(&of->of[w].wound, of->context);
+    vxm_coverage_flips_destroy(&of->of[w].part, of->context);
+    vxm_coverage_flips_destroy(&of->of[w].all, of->context);
+    vxm_chain_flips_destroy(&of->of[w].wound, of->context);
   }
   vxm_free(of->context, of);
 }

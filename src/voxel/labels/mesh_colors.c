@@ -279,7 +279,7 @@ static vxm_status color_all(color_task *task, bool average, vxm_error *error) {
                              (size_t)(dims[1] * dims[2]) * sizeof *task->sums, &local);
   }
   if (local.code == VXM_OK)
-    vxm_parallel_asked(context, (size_t)((dims[0] + TILE - 1) / TILE), color_slab, task, &local);
+    vxm_parallel_cancellable(context, (size_t)((dims[0] + TILE - 1) / TILE), color_slab, task, &local);
   vxm_free(context, task->sums);
   if (is_open)
     vxm_surface_slices_close(&slices);

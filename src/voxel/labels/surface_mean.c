@@ -57,7 +57,7 @@ static vxm_status list(vxm_surface_slices *slices, bool is_counting, vxm_error *
         slices->first[run + 1]++;
       else
         slices->triangles[slices->first[run]++] = (uint32_t)t;
-    status = vxm_ask_at(t, slices->paint->soup->context, error);
+    status = vxm_check_cancelled_at(t, slices->paint->soup->context, error);
   }
   return status;
 }

@@ -76,7 +76,7 @@ static vxm_status cut_all(cutter *cut, vxm_error *error) {
     else if (n > 3 && n < UINT32_MAX)
       status = cut_polygon(cut, f, corners, n, error);
     if (status == VXM_OK)
-      status = vxm_ask_at(f, soup->context, error);
+      status = vxm_check_cancelled_at(f, soup->context, error);
   }
   return status;
 }

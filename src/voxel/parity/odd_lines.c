@@ -94,7 +94,7 @@ vxm_status vxm_odd_lines_find(vxm_odd_lines *out, vxm_context *context, const vx
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
   else
-    status = vxm_parallel_asked(context, 3, find_plane, &f, error);
+    status = vxm_parallel_cancellable(context, 3, find_plane, &f, error);
   for (int a = 0; a < 3; a++)
     vxm_free(context, f.planes[a].of_part);
   if (status == VXM_OK)

@@ -243,7 +243,7 @@ vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, vxm_split_rule
 void vxm_split_trim(vxm_split *split) {
   vxm_context *context = split->context;
   if (split->cap_begin)
-    vxm_caps_free(&split->caps);
+    vxm_caps_destroy(&split->caps);
   vxm_free(context, split->cap_begin);
   vxm_free(context, split->loop_part);
   vxm_free(context, split->part);

@@ -53,7 +53,7 @@ static vxm_status cut_large(builder *b) {
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
     size_t n;
     const uint32_t *corner = vxm_face(soup, f, &n), *triangles;
-    status = vxm_ask_at(f, b->triangles->context, &b->error);
+    status = vxm_check_cancelled_at(f, b->triangles->context, &b->error);
     if (n <= 4 || status != VXM_OK)
       continue;
     status = vxm_triangulate(&triangulator, soup->positions, corner, n, &triangles, &b->error);
@@ -119,7 +119,7 @@ static inline void cut_face(builder *b, size_t face) {
 static bool add_triangles(builder *b) {
   b->cut_next = 0;
   for (size_t f = 0; f < b->soup->face_count; f++) {
-    if (vxm_ask_at(f, b->triangles->context, &b->error) != VXM_OK)
+    if (vxm_check_cancelled_at(f, b->triangles->context, &b->error) != VXM_OK)
       return false;
     cut_face(b, f);
   }
@@ -219,7 +219,7 @@ static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *poi
   size_t count = 0, first_apex = triangles->first_apex;
   memset(number, 0xff, first_apex * sizeof *number); /* none */
   for (size_t f = 0; f < triangles->triangle_count; f++) {
-    if (vxm_ask_at(f, triangles->context, &b->error) != VXM_OK)
+    if (vxm_check_cancelled_at(f, triangles->context, &b->error) != VXM_OK)
       return false;
     for (int k = 0; k < 3 && f + AHEAD < triangles->triangle_count; k++)
       if (triangles->corners[f + AHEAD][k] < first_apex)
@@ -263,7 +263,7 @@ static vxm_status gather_points(builder *b) {
   if (!triangles->positions)
     return b->error.code;
   for (size_t p = 0; p < triangles->first_apex; p++) {
-    if (vxm_ask_at(p, triangles->context, &b->error) != VXM_OK)
+    if (vxm_check_cancelled_at(p, triangles->context, &b->error) != VXM_OK)
       return b->error.code;
     memcpy(triangles->positions[p], position_of(b, triangles->vertex[p]), sizeof triangles->positions[p]);
   }
@@ -301,7 +301,7 @@ static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
   find_box(triangles);
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     const uint32_t *corner = triangles->corners[f];
-    vxm_status status = vxm_ask_at(f, triangles->context, error);
+    vxm_status status = vxm_check_cancelled_at(f, triangles->context, error);
     if (status != VXM_OK)
       return status;
     if (corner[2] >= triangles->first_apex) {

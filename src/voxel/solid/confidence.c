@@ -66,7 +66,7 @@ vxm_status vxm_confidence_fill(vxm_voxel_pass *pass, const vxm_window *window, v
   }
   pass->has_voxels = has_voxels;
   if (status == VXM_OK)
-    status =
-        vxm_parallel_asked(pass->context, (size_t)(window->end - window->begin), fill_slice, &job, error);
+    status = vxm_parallel_cancellable(pass->context, (size_t)(window->end - window->begin), fill_slice, &job,
+                                      error);
   return status;
 }

@@ -63,7 +63,7 @@ static vxm_status lock(pthread_mutex_t *mutex, vxm_context *context, vxm_error *
     until.tv_nsec %= 1000000000;
     if (pthread_mutex_timedlock(mutex, &until) == 0)
       break;
-    status = vxm_ask(context, error);
+    status = vxm_check_cancelled(context, error);
   }
   return status;
 }

@@ -48,8 +48,8 @@ vxm_status vxm_self_overlap_fill(vxm_voxel_pass *pass, const vxm_window *window,
     status = vxm_chain_winding_fill(wound, pass->workspace, &pass->placed, window, false, error);
   union_job job = {.window = window, .other = &wound->window};
   if (status == VXM_OK)
-    status =
-        vxm_parallel_asked(pass->context, (size_t)(window->end - window->begin), unite_slice, &job, error);
+    status = vxm_parallel_cancellable(pass->context, (size_t)(window->end - window->begin), unite_slice, &job,
+                                      error);
   if (job.added)
     vxm_self_overlap_note(pass);
   return status;

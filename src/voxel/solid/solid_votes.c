@@ -109,8 +109,8 @@ vxm_status vxm_solid_leave_out_abstainers(vxm_voxel_pass *pass, const vxm_window
   vxm_status status = vxm_odd_lines_find(&lines, pass->context, window, &pass->placed,
                                          &pass->analysis->triangles, part_begin, part_end, error);
   if (status == VXM_OK)
-    status = vxm_parallel_asked(pass->context, (size_t)(window->end - window->begin), abstain_in_slice, &job,
-                                error);
+    status = vxm_parallel_cancellable(pass->context, (size_t)(window->end - window->begin), abstain_in_slice,
+                                      &job, error);
   vxm_odd_lines_destroy(&lines);
   return status;
 }

@@ -368,7 +368,7 @@ static void free_scratches(sparse_state *state, size_t workers) {
     vxm_flipped_nodes_destroy(&d->flipped);
     vxm_free(context, d->united);
     vxm_free(context, d->is_united);
-    vxm_chain_flips_free(&d->wound, context);
+    vxm_chain_flips_destroy(&d->wound, context);
   }
   vxm_free(context, state->scratches);
 }

@@ -198,7 +198,7 @@ static void sort_chunk(size_t chunk, int worker, void *payload) {
   size_t *counter = t->counters + chunk * t->tile_count;
   for (size_t from = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk), to; from < end;
        from = to) {
-    to = end - from < VXM_ASK_STEPS ? end : from + VXM_ASK_STEPS;
+    to = end - from < VXM_CANCEL_STEPS ? end : from + VXM_CANCEL_STEPS;
     if (vxm_task_progress_stopped(&t->progress, worker))
       return;
     if (!t->list)

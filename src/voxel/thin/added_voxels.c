@@ -27,12 +27,12 @@ static void choose(size_t number, int worker, void *payload) {
   vxm_meeting_slab *slab = &s->slabs->slabs[number];
   vxm_meeting *meetings = slab->meetings;
   size_t chosen = slab->begin = slab->end, m = chosen;
-  for (size_t next; m < slab->count && vxm_cell_stage(meetings[m].cell) == s->now; m = next) {
+  for (size_t next; m < slab->count && vxm_dual_stage(meetings[m].element) == s->now; m = next) {
     int64_t voxel[3];
-    for (next = m + 1; next < slab->count && meetings[next].cell == meetings[m].cell; next++)
+    for (next = m + 1; next < slab->count && meetings[next].element == meetings[m].element; next++)
       ;
-    if (vxm_cell_choose(&s->job->view, meetings + m, next - m, voxel))
-      meetings[chosen++].cell = pack(voxel); /* which has been looked at */
+    if (vxm_dual_choose(&s->job->view, meetings + m, next - m, voxel))
+      meetings[chosen++].element = pack(voxel); /* which has been looked at */
   }
   slab->chosen = chosen - slab->begin;
   slab->end = m;
@@ -71,7 +71,7 @@ static void set_words(size_t number, int worker, void *payload) {
   int64_t added = 0;
   for (size_t c = 0; c < slab->chosen; c++) {
     int64_t voxel[3];
-    unpack(voxel, slab->meetings[slab->begin + c].cell);
+    unpack(voxel, slab->meetings[slab->begin + c].element);
     if (set_bit(view, vxm_view_bit(view, voxel), alone))
       added += note_added(s, voxel);
   }
@@ -84,22 +84,22 @@ static vxm_status put_in_set(const stage *s, vxm_meeting_slab *slab, vxm_error *
   vxm_status status = VXM_OK;
   for (size_t c = 0; c < slab->chosen && status == VXM_OK; c++) {
     int64_t voxel[3];
-    unpack(voxel, slab->meetings[slab->begin + c].cell);
+    unpack(voxel, slab->meetings[slab->begin + c].element);
     if (vxm_view_set(view, voxel))
       continue;
     status = vxm_voxel_set_add(s->to->set, (uint64_t)vxm_view_bit(view, voxel), error);
     slab->added += note_added(s, voxel);
     if (status == VXM_OK)
-      status = vxm_ask_at(c + 1, s->slabs->context, error);
+      status = vxm_check_cancelled_at(c + 1, s->slabs->context, error);
   }
   return status;
 }
 
 static vxm_status add_stage(stage *s, vxm_error *error) {
   vxm_meeting_slabs *slabs = s->slabs;
-  vxm_status status = vxm_parallel_asked(slabs->context, slabs->count, choose, s, error);
+  vxm_status status = vxm_parallel_cancellable(slabs->context, slabs->count, choose, s, error);
   if (status == VXM_OK && !s->to->set)
-    return vxm_parallel_asked(slabs->context, slabs->count, set_words, s, error);
+    return vxm_parallel_cancellable(slabs->context, slabs->count, set_words, s, error);
   for (size_t i = 0; i < slabs->count && status == VXM_OK; i++)
     status = put_in_set(s, &slabs->slabs[i], error);
   return status;
@@ -112,7 +112,7 @@ static bool next_stage(stage *s) {
     const vxm_meeting_slab *slab = &s->slabs->slabs[i];
     if (slab->end == slab->count)
       continue;
-    vxm_thin_stage own = vxm_cell_stage(slab->meetings[slab->end].cell);
+    vxm_thin_stage own = vxm_dual_stage(slab->meetings[slab->end].element);
     s->now = any && s->now < own ? s->now : own;
     any = true;
   }

@@ -23,7 +23,7 @@ static bool is_settled(const vxm_view *view, const int64_t lowest[3]) {
   for (int a = 0; a < 3; a++)
     held &= lowest[a] >= view->begin[a] && lowest[a] + 1 < view->end[a];
   if (!held) {
-    int count = vxm_cell_ends(ends, VXM_CELL_CUBE, lowest);
+    int count = vxm_dual_ends(ends, VXM_DUAL_CUBE, lowest);
     return vxm_view_any_set(view, (const int64_t(*)[3])ends, count, &held) || !held;
   }
   int64_t first = vxm_view_bit(view, lowest);
@@ -53,6 +53,6 @@ void vxm_meet_cubes(vxm_meetings *meetings, const vxm_thin_job *job) {
     for (int k = 0; k < 3; k++)
       for (int a = 0; a < 3; a++)
         offsets[k][a] = (double)(corner[k].at[a] - (lowest[a] + 1) * job->placed->lattice.unit) / unit;
-    vxm_meetings_put(meetings, &job->view, VXM_CELL_CUBE, lowest, (const double(*)[3])offsets, 3);
+    vxm_meetings_put(meetings, &job->view, VXM_DUAL_CUBE, lowest, (const double(*)[3])offsets, 3);
   }
 }

@@ -19,7 +19,7 @@ typedef struct sorting {
 } sorting;
 
 static uint64_t voxel_of(const vxm_meeting *m) {
-  return m->cell & vxm_low_bits(VXM_CELL_VOXEL_BITS);
+  return m->element & vxm_low_bits(VXM_DUAL_VOXEL_BITS);
 }
 
 static size_t slab_number(const sorting *s, const vxm_meeting *m) {
@@ -99,17 +99,18 @@ static vxm_status sort_many(sorting *s, vxm_error *error) {
   choose_ranges(s);
   vxm_status status = make_room(context, &slabs->room, &slabs->capacity, s->total, error);
   if (status == VXM_OK)
-    status = vxm_renew(context, (void **)&slabs->starts, &slabs->starts_room, threads, sizeof *slabs->starts,
-                       error);
+    status = vxm_renew(context, (void **)&slabs->starts, &slabs->starts_capacity, threads,
+                       sizeof *slabs->starts, error);
   if (status == VXM_OK)
-    status = vxm_parallel_asked(context, threads, count_list, s, error);
+    status = vxm_parallel_cancellable(context, threads, count_list, s, error);
   if (status != VXM_OK)
     return status;
   place_slabs(s);
-  status = make_room(context, &slabs->scratch, &slabs->scratch_room, s->workers * s->largest, error);
+  status = make_room(context, &slabs->scratch, &slabs->scratch_capacity, s->workers * s->largest, error);
   if (status == VXM_OK)
-    status = vxm_parallel_asked(context, threads, distribute_list, s, error);
-  return status == VXM_OK ? vxm_parallel_asked(context, VXM_MEETING_SLABS, sort_slab, s, error) : status;
+    status = vxm_parallel_cancellable(context, threads, distribute_list, s, error);
+  return status == VXM_OK ? vxm_parallel_cancellable(context, VXM_MEETING_SLABS, sort_slab, s, error)
+                          : status;
 }
 
 /** All in one slab. The list of a thread that has found all stays where it is. */

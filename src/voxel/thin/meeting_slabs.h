@@ -22,9 +22,9 @@ typedef struct vxm_meeting_slabs {
   vxm_meeting *room; /**< for all of them; twice where they are few */
   size_t capacity;
   vxm_meeting *scratch; /**< for a slab of each thread that sorts */
-  size_t scratch_room;
+  size_t scratch_capacity;
   size_t (*starts)[VXM_MEETING_SLABS]; /**< of each thread: where its meetings of each slab go */
-  size_t starts_room;
+  size_t starts_capacity;
   vxm_meeting_slab slabs[VXM_MEETING_SLABS];
   size_t count; /**< of slabs: 0 if there are no meetings */
 } vxm_meeting_slabs;

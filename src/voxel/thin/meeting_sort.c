@@ -14,11 +14,11 @@ typedef struct digits {
 } digits;
 
 static digits digits_of(const vxm_meeting *meetings, size_t count) {
-  enum { KIND_BITS = 64 - VXM_CELL_VOXEL_BITS };
+  enum { KIND_BITS = 64 - VXM_DUAL_VOXEL_BITS };
   uint64_t differ = 0;
   for (size_t m = 1; m < count; m++)
-    differ |= meetings[m].cell ^ meetings[0].cell;
-  differ &= vxm_low_bits(VXM_CELL_VOXEL_BITS);
+    differ |= meetings[m].element ^ meetings[0].element;
+  differ &= vxm_low_bits(VXM_DUAL_VOXEL_BITS);
   digits d = {.voxel_bits = 0};
   while (differ >> d.voxel_bits != 0)
     d.voxel_bits++;
@@ -28,7 +28,7 @@ static digits digits_of(const vxm_meeting *meetings, size_t count) {
 }
 
 static inline size_t digit_of(const digits *d, uint64_t cell, int place) {
-  uint64_t number = (cell & vxm_low_bits((unsigned)d->voxel_bits)) | cell >> VXM_CELL_VOXEL_BITS
+  uint64_t number = (cell & vxm_low_bits((unsigned)d->voxel_bits)) | cell >> VXM_DUAL_VOXEL_BITS
                                                                                  << d->voxel_bits;
   return (size_t)(number >> place * d->bits & vxm_low_bits((unsigned)d->bits));
 }
@@ -39,14 +39,14 @@ static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count
   size_t next[DIGITS], total = 0;
   memset(next, 0, sizeof *next << d->bits);
   for (size_t m = 0; m < count; m++)
-    next[digit_of(d, from[m].cell, place)]++;
+    next[digit_of(d, from[m].element, place)]++;
   for (int i = 0; i < 1 << d->bits; i++) {
     size_t here = next[i];
     next[i] = total;
     total += here;
   }
   for (size_t m = 0; m < count; m++)
-    to[next[digit_of(d, from[m].cell, place)]++] = from[m];
+    to[next[digit_of(d, from[m].element, place)]++] = from[m];
 }
 
 /** Sorts a few. */
@@ -54,7 +54,7 @@ static void sort_few(vxm_meeting *meetings, size_t count) {
   for (size_t m = 1; m < count; m++) {
     vxm_meeting one = meetings[m];
     size_t to = m;
-    for (; to > 0 && meetings[to - 1].cell > one.cell; to--)
+    for (; to > 0 && meetings[to - 1].element > one.element; to--)
       meetings[to] = meetings[to - 1];
     meetings[to] = one;
   }
@@ -99,8 +99,8 @@ static seen_cells see_cells(vxm_meeting *room, const vxm_meeting *meetings, size
   seen_cells seen = {once, once + words, 64 - bits};
   memset(once, 0, 2 * words * sizeof *once);
   for (size_t m = 0; m < count; m++)
-    if (vxm_cell_stage(meetings[m].cell) == VXM_THIN_DOMINANT_LINKS) {
-      const size_t bit = hash_of(&seen, meetings[m].cell);
+    if (vxm_dual_stage(meetings[m].element) == VXM_THIN_DOMINANT_LINKS) {
+      const size_t bit = hash_of(&seen, meetings[m].element);
       const uint64_t mask = UINT64_C(1) << (bit % 64);
       seen.twice[bit / 64] |= seen.once[bit / 64] & mask;
       seen.once[bit / 64] |= mask;
@@ -114,8 +114,9 @@ static size_t set_apart(vxm_meeting *meetings, vxm_meeting *room, size_t count) 
   const seen_cells seen = see_cells(room, meetings, count);
   size_t alone = 0;
   for (size_t m = 0; m < count; m++) {
-    const size_t bit = hash_of(&seen, meetings[m].cell);
-    if (vxm_cell_stage(meetings[m].cell) != VXM_THIN_DOMINANT_LINKS || seen.twice[bit / 64] >> (bit % 64) & 1)
+    const size_t bit = hash_of(&seen, meetings[m].element);
+    if (vxm_dual_stage(meetings[m].element) != VXM_THIN_DOMINANT_LINKS ||
+        seen.twice[bit / 64] >> (bit % 64) & 1)
       continue;
     const vxm_meeting one = meetings[m];
     meetings[m] = meetings[alone];

@@ -3,7 +3,7 @@
 #ifndef VXM_VOXEL_THIN_MEETING_SORT_H
 #define VXM_VOXEL_THIN_MEETING_SORT_H
 
-#include "voxel/thin/centre_cells.h"
+#include "voxel/thin/dual_elements.h"
 
 /**
  * Sorts by the numbers of cells. Cells of the first stage that have one meeting may come first, in any order.

@@ -28,13 +28,13 @@ void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thi
                            const int64_t lowest[3], int direction, double offset) {
   vxm_meeting *m = next_of(meetings);
   if (m)
-    *m = (vxm_meeting){vxm_cell_number(view, stage, direction, lowest), {parts_of(offset)}, 0};
+    *m = (vxm_meeting){vxm_dual_number(view, stage, direction, lowest), {parts_of(offset)}, 0};
 }
 
 void vxm_meetings_put_in_cube(vxm_meetings *meetings, size_t triangle) {
   if (!is_open(meetings) ||
-      (meetings->in_cubes_count == meetings->in_cubes_room &&
-       vxm_grow(meetings->context, (void **)&meetings->in_cubes, &meetings->in_cubes_room,
+      (meetings->in_cubes_count == meetings->in_cubes_capacity &&
+       vxm_grow(meetings->context, (void **)&meetings->in_cubes, &meetings->in_cubes_capacity,
                 meetings->in_cubes_count + 1, sizeof *meetings->in_cubes, &meetings->error) != VXM_OK))
     return;
   meetings->in_cubes[meetings->in_cubes_count++] = (uint32_t)triangle;
@@ -42,16 +42,16 @@ void vxm_meetings_put_in_cube(vxm_meetings *meetings, size_t triangle) {
 
 void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, const int64_t lowest[3],
                       const double (*offsets)[3], int count) {
-  bool is_cube = kind == VXM_CELL_CUBE;
+  bool is_cube = kind == VXM_DUAL_CUBE;
   vxm_meeting *m = next_of(meetings);
   if (!m)
     return;
-  *m =
-      (vxm_meeting){.cell = vxm_cell_number(view, is_cube ? VXM_THIN_CUBES : VXM_THIN_SQUARES, kind, lowest)};
+  *m = (vxm_meeting){.element =
+                         vxm_dual_number(view, is_cube ? VXM_THIN_CUBES : VXM_THIN_SQUARES, kind, lowest)};
   for (int i = 0; i < count; i++) {
     int32_t at[3] = {0, 0, 0};
     for (int s = 0; s < (is_cube ? 3 : 2); s++)
       m->offset[s] += at[s] = parts_of(offsets[i][s]);
-    m->met |= vxm_cell_boxes(at, is_cube ? 3 : 2);
+    m->met |= vxm_dual_boxes(at, is_cube ? 3 : 2);
   }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Where the surface meets what lies between voxel centres (voxel/thin/centre_cells.h): faces cross links,
+ * Where the surface meets what lies between voxel centres (voxel/thin/dual_elements.h): faces cross links,
  * sections of faces lie in squares, faces in cubes. Only meetings at which no voxel is set are kept.
  */
 #ifndef VXM_VOXEL_THIN_MEETINGS_H
@@ -18,7 +18,7 @@ typedef struct vxm_meetings {
   vxm_meeting *list;
   size_t count, capacity;
   uint32_t *in_cubes; /**< triangles in cubes without a voxel, see vxm_meet_cubes */
-  size_t in_cubes_count, in_cubes_room;
+  size_t in_cubes_count, in_cubes_capacity;
   size_t most;       /**< of `count` and `in_cubes_count` together */
   bool is_full;      /**< there were more */
   int64_t thin_area; /**< of faces at links along the axes along which their normals are longest; in parts of

@@ -11,7 +11,7 @@
 #define VXM_VOXEL_THIN_OCTREE_SIEVE_H
 
 #include "voxel/parity/snapped_points.h"
-#include "voxel/thin/centre_cells.h"
+#include "voxel/thin/dual_elements.h"
 
 /** Of the links along each axis which a triangle crosses, a box with the columns of those that may have no
  * voxel at their ends; empty where there are none. */

@@ -65,7 +65,7 @@ static bool is_filled(const vxm_view *view, const int64_t lowest[3], int axis, b
            vxm_view_bit_set(view, bit + view->step[u] + view->step[v]);
   }
   int64_t ends[8][3];
-  int count = vxm_cell_ends(ends, VXM_CELL_SQUARE + axis, lowest);
+  int count = vxm_dual_ends(ends, VXM_DUAL_SQUARE + axis, lowest);
   return vxm_view_any_set(view, (const int64_t(*)[3])ends, count, held);
 }
 
@@ -74,7 +74,7 @@ static void look_at_square(vxm_meetings *meetings, const vxm_thin_job *job, cons
   bool held;
   if (is_filled(&job->view, lowest, axis, &held) || !held)
     return;
-  vxm_meetings_put(meetings, &job->view, VXM_CELL_SQUARE + axis, lowest, offsets, count);
+  vxm_meetings_put(meetings, &job->view, VXM_DUAL_SQUARE + axis, lowest, offsets, count);
 }
 
 /* Two numbers at a time: along the two axes of a plane. */

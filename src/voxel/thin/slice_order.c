@@ -49,7 +49,7 @@ vxm_status vxm_slice_order_make(vxm_slice_order *order, const vxm_thin_job *job,
       int64_t bin = bin_of(&b, job->corners[t]);
       if (bin >= 0)
         next[bin]++;
-      status = vxm_ask_at(t, order->context, error);
+      status = vxm_check_cancelled_at(t, order->context, error);
     }
   for (int i = 0; i < BINS_MAX; i++) {
     size_t here = next[i];
@@ -61,7 +61,7 @@ vxm_status vxm_slice_order_make(vxm_slice_order *order, const vxm_thin_job *job,
       int64_t bin = bin_of(&b, job->corners[t]);
       if (bin >= 0)
         order->triangles[next[bin]++] = (uint32_t)t;
-      status = vxm_ask_at(t, order->context, error);
+      status = vxm_check_cancelled_at(t, order->context, error);
     }
   order->count = status == VXM_OK ? total : 0;
   return status;

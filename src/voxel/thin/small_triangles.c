@@ -134,7 +134,7 @@ static void put_section(const vxm_link_frame *frames, const small *s, const int6
         offsets[i][span++] =
             ((double)p[a] + (double)(q[a] - p[a]) * part) / unit + (double)(s->low[a] - lowest[a]) - 0.5;
   }
-  vxm_meetings_put(frames[0].meetings, &job->view, VXM_CELL_SQUARE + axis, lowest,
+  vxm_meetings_put(frames[0].meetings, &job->view, VXM_DUAL_SQUARE + axis, lowest,
                    (const double(*)[3])offsets, 2);
 }
 

@@ -155,7 +155,7 @@ static vxm_status add_cubes(vxm_thin_adder *thin, search *s, const vxm_added_vox
   }
   if (!any)
     return VXM_OK;
-  vxm_status status = vxm_parallel_asked(thin->context, (size_t)thin->threads, look_at_cubes, s, error);
+  vxm_status status = vxm_parallel_cancellable(thin->context, (size_t)thin->threads, look_at_cubes, s, error);
   return status == VXM_OK ? apply_found(thin, s->job, to, error) : status;
 }
 
@@ -169,7 +169,7 @@ static void release_excess(vxm_thin_adder *thin) {
       thin->found[w].list = NULL;
       thin->found[w].capacity = thin->found[w].count = 0;
     }
-  if (thin->slabs.capacity + thin->slabs.scratch_room > all)
+  if (thin->slabs.capacity + thin->slabs.scratch_capacity > all)
     vxm_meeting_slabs_destroy(&thin->slabs);
 }
 
@@ -188,7 +188,7 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_added_v
   size_t tasks = (count_looked_at(job) + s.task - 1) / s.task;
   vxm_status status = make_room(thin, too_many != NULL, error);
   if (status == VXM_OK)
-    status = vxm_parallel_asked(thin->context, tasks, look_at_some, &s, error);
+    status = vxm_parallel_cancellable(thin->context, tasks, look_at_some, &s, error);
   if (status == VXM_OK && too_many && are_too_many(thin)) {
     *too_many = true;
     return VXM_OK;
@@ -210,7 +210,7 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_added_v
 static void make_short_cells(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window) {
   const size_t points = job->triangles->point_count;
   if (job->directions > VXM_LINK_AXES || job->placed->wide || !vxm_cells_fit_short(window) ||
-      vxm_renew(thin->context, (void **)&thin->short_cells, &thin->short_room, points,
+      vxm_renew(thin->context, (void **)&thin->short_cells, &thin->short_capacity, points,
                 sizeof *thin->short_cells, NULL) != VXM_OK)
     return;
   vxm_sieve_kernels_of(NULL)->shorten(thin->short_cells, job->placed->cells, points, job->view.axis);

@@ -33,7 +33,7 @@ typedef struct vxm_thin_adder {
   uint64_t *maps; /**< see vxm_thin_job */
   size_t map_words;
   uint32_t *short_cells;
-  size_t short_room;
+  size_t short_capacity;
   vxm_slice_order order;
   int64_t added;
   int64_t area;  /**< of the surface that had no voxel beside it, as vxm_meetings has it */

@@ -4,7 +4,7 @@
 #define VXM_VOXEL_THIN_THIN_JOB_H
 
 #include "voxel/parity/snapped_points.h"
-#include "voxel/thin/centre_cells.h"
+#include "voxel/thin/dual_elements.h"
 
 /** Bits of the short number of a cell along one axis; the highest is not used. */
 enum { VXM_SHORT_BITS = 10 };

@@ -125,7 +125,7 @@ vxm_status vxm_chain_flips_take(vxm_chain_flips *out, const vxm_chain_winding *c
   return VXM_OK;
 }
 
-void vxm_chain_flips_free(vxm_chain_flips *flips, vxm_context *context) {
+void vxm_chain_flips_destroy(vxm_chain_flips *flips, vxm_context *context) {
   vxm_free(context, flips->places);
   vxm_free(context, flips->ends);
 }

@@ -23,6 +23,6 @@ typedef struct vxm_chain_flips {
  */
 vxm_status vxm_chain_flips_take(vxm_chain_flips *out, const vxm_chain_winding *chain, size_t slab,
                                 size_t rows, int place_bits);
-void vxm_chain_flips_free(vxm_chain_flips *flips, vxm_context *context);
+void vxm_chain_flips_destroy(vxm_chain_flips *flips, vxm_context *context);
 
 #endif

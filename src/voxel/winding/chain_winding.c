@@ -376,7 +376,7 @@ vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspa
     return status;
   if (out->more_count > 0)
     qsort(out->more, out->more_count, sizeof *out->more, compare_more);
-  return vxm_parallel_asked(out->context, (size_t)depth, count_rows, out, error);
+  return vxm_parallel_cancellable(out->context, (size_t)depth, count_rows, out, error);
 }
 
 void vxm_chain_winding_destroy(vxm_chain_winding *counted) {

@@ -223,7 +223,7 @@ static vxm_status find_crossings(finder *f, size_t begin, size_t end) {
       wanted[count] = t;
       count += has_lines(f->cells, corners[t]);
     }
-    if (vxm_ask(f->triangles->context, &f->error) != VXM_OK)
+    if (vxm_check_cancelled(f->triangles->context, &f->error) != VXM_OK)
       return f->error.code;
     for (size_t i = 0; i < count; i++)
       if (!add_triangle(f, corners[wanted[i]]))

@@ -171,7 +171,7 @@ static vxm_status decide_by_tree(fill_job *job, vxm_error *error) {
   if (status == VXM_OK && job->asking.asked) {
     status = vxm_brick_mask_begin(&mesh->asked, job->asking.begin, job->asking.end, job->top + 1, error);
     if (status == VXM_OK)
-      status = vxm_parallel_asked(context, (depth + 6) / 4, mark_asked_slice, job, error);
+      status = vxm_parallel_cancellable(context, (depth + 6) / 4, mark_asked_slice, job, error);
     job->asking.is_asked = true;
     if (status != VXM_OK || !vxm_brick_mask_raise(&mesh->asked))
       return status;

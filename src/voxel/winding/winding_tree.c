@@ -289,7 +289,7 @@ static vxm_status build_trees(builder *b, const size_t begin[VXM_WINDING_CLASSES
     status = list_tasks(b, roots[out->root_count++]);
   }
   if (status == VXM_OK)
-    status = vxm_parallel_asked(out->context, b->task_count, build_task, b, &b->error);
+    status = vxm_parallel_cancellable(out->context, b->task_count, build_task, b, &b->error);
   for (size_t r = 0; r < out->root_count && status == VXM_OK; r++)
     join_tasks(b, roots[r]);
   return status;

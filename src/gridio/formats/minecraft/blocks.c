@@ -201,7 +201,7 @@ static vxm_status match_colors(vxm_blocks *out, vxm_block_matcher *matcher, vxm_
   for (size_t v = 0; v < voxels && status == VXM_OK; v++) {
     const uint8_t *rgba = field->values + 4 * v;
     out->ids[v] = rgba[3] ? numbers[vxm_block_match(matcher, rgba)] : 0;
-    status = vxm_ask_at(v, field->context, error);
+    status = vxm_check_cancelled_at(v, field->context, error);
   }
   return status;
 }

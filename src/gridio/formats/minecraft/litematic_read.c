@@ -129,7 +129,7 @@ static vxm_status put_blocks(vxm_block_file *file, const region *r, const uint32
         if (file->ids && numbers[number] != 0)
           file->ids[at] = (uint16_t)numbers[number];
       }
-      status = vxm_ask(file->context, error);
+      status = vxm_check_cancelled(file->context, error);
     }
   return status;
 }

@@ -101,7 +101,7 @@ static vxm_status unpack_all(vxm_nbt *tree, size_t *size, vxm_inflater *inflater
     if (status == VXM_OK && *size < capacity)
       break;
     if (status == VXM_OK)
-      status = vxm_ask(tree->context, error);
+      status = vxm_check_cancelled(tree->context, error);
   }
   return status;
 }

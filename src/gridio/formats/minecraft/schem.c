@@ -60,7 +60,7 @@ static vxm_status do_rows(size_t *size, vxm_nbt_writer *writer, const vxm_blocks
     }
     status = writer ? vxm_progress(blocks->field->context, "writing",
                                    (double)(y + 1) / (double)blocks->size[1], error)
-                    : vxm_ask(blocks->field->context, error);
+                    : vxm_check_cancelled(blocks->field->context, error);
   }
   return status;
 }

@@ -100,7 +100,7 @@ static vxm_status read_blocks(vxm_block_file *file, const numbers *known, const 
                            "block %zu is number %" PRIu32 ", which the palette does not have", b, number);
     if (file->ids)
       file->ids[b] = (uint16_t)known->of[number];
-    status = vxm_ask_at(b, file->context, error);
+    status = vxm_check_cancelled_at(b, file->context, error);
   }
   return status;
 }

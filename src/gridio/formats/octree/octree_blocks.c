@@ -80,7 +80,7 @@ uint64_t vxm_octree_each_block(vxm_octree_node *const nodes[VXM_OCTREE_LEVELS], 
 }
 
 vxm_octree_part vxm_octree_part_at(const vxm_sparse *sparse, int level, const int64_t at[3]) {
-  vxm_octree_part part = {VXM_CELL_MIXED, 0};
+  vxm_octree_part part = {VXM_OCTREE_MIXED, 0};
   for (int l = sparse->levels - 1; l > level; l--) {
     int shift = 2 * l + 2;
     part = vxm_octree_child_part(

@@ -10,25 +10,25 @@
 
 /** A node or brick, or what stands for it. */
 typedef struct vxm_octree_part {
-  vxm_octree_cell kind;
+  vxm_octree_state kind;
   size_t index; /**< of a mixed one, among the nodes of its level or the bricks */
 } vxm_octree_part;
 
 /** A child of a node of a level. */
 static inline vxm_octree_part vxm_octree_child_part(const vxm_sparse *sparse, int level, vxm_octree_part node,
                                                     unsigned child) {
-  if (node.kind != VXM_CELL_MIXED)
+  if (node.kind != VXM_OCTREE_MIXED)
     return node;
   const vxm_octree_node *children = &sparse->nodes[level][node.index];
   if (children->mixed >> child & 1)
-    return (vxm_octree_part){VXM_CELL_MIXED, vxm_octree_index(children, child)};
-  return (vxm_octree_part){children->full >> child & 1 ? VXM_CELL_FULL : VXM_CELL_EMPTY, 0};
+    return (vxm_octree_part){VXM_OCTREE_MIXED, vxm_octree_index(children, child)};
+  return (vxm_octree_part){children->full >> child & 1 ? VXM_OCTREE_FULL : VXM_OCTREE_EMPTY, 0};
 }
 
 /** The children of a node that are not empty, as bits. */
 static inline uint64_t vxm_octree_children(const vxm_sparse *sparse, int level, vxm_octree_part node) {
-  if (node.kind != VXM_CELL_MIXED)
-    return node.kind == VXM_CELL_FULL ? ~UINT64_C(0) : 0;
+  if (node.kind != VXM_OCTREE_MIXED)
+    return node.kind == VXM_OCTREE_FULL ? ~UINT64_C(0) : 0;
   return sparse->nodes[level][node.index].mixed | sparse->nodes[level][node.index].full;
 }
 

@@ -41,7 +41,7 @@ static size_t node_bytes(const vxm_octree_encoder *e, vxm_octree_part part, cons
     return 1 + e->value_bytes;
   for (uint64_t left = vxm_octree_children(e->tree, 0, part); left; left &= left - 1) {
     vxm_octree_part brick = vxm_octree_child_part(e->tree, 0, part, (unsigned)__builtin_ctzll(left));
-    uint64_t bits = brick.kind == VXM_CELL_MIXED ? e->tree->bricks[brick.index] : ~UINT64_C(0);
+    uint64_t bits = brick.kind == VXM_OCTREE_MIXED ? e->tree->bricks[brick.index] : ~UINT64_C(0);
     at += 1 + (*at == 1 ? 1 : (size_t)vxm_popcount(bits)) * e->value_bytes;
   }
   return (size_t)(at - data);

@@ -190,25 +190,25 @@ static bool meets(const load *l, const int64_t at[3], int64_t side) {
   return yes;
 }
 
-static vxm_octree_cell load_node(load *l, int level, size_t index, const int64_t at[3]);
+static vxm_octree_state load_node(load *l, int level, size_t index, const int64_t at[3]);
 
 /** A mixed child of a node above tiles, at a level. */
-static vxm_octree_cell load_child(load *l, int level, size_t index, const int64_t at[3]) {
+static vxm_octree_state load_child(load *l, int level, size_t index, const int64_t at[3]) {
   if (level > l->file->tile_level)
     return load_node(l, level, index, at);
   vxm_octree_add_tile(&l->growth, l->file, index, at);
-  return VXM_CELL_MIXED;
+  return VXM_OCTREE_MIXED;
 }
 
 /** A node above tiles, as far as the box has it. */
-static vxm_octree_cell load_node(load *l, int level, size_t index, const int64_t at[3]) {
+static vxm_octree_state load_node(load *l, int level, size_t index, const int64_t at[3]) {
   const vxm_octree_node *node = &l->file->nodes[level][index];
   int64_t side = vxm_octree_side(level);
   uint64_t mixed = 0, full = 0;
   size_t first = vxm_octree_growth_next(&l->growth, level);
   for (uint64_t left = node->mixed | node->full; left && l->growth.status == VXM_OK; left &= left - 1) {
     unsigned child = (unsigned)__builtin_ctzll(left);
-    vxm_octree_cell cell = VXM_CELL_FULL;
+    vxm_octree_state cell = VXM_OCTREE_FULL;
     int64_t place[3];
     vxm_octree_place(child, place);
     for (int a = 0; a < 3; a++)
@@ -217,8 +217,8 @@ static vxm_octree_cell load_node(load *l, int level, size_t index, const int64_t
       continue;
     if (node->mixed >> child & 1)
       cell = load_child(l, level - 1, vxm_octree_index(node, child), place);
-    mixed |= (uint64_t)(cell == VXM_CELL_MIXED) << child;
-    full |= (uint64_t)(cell == VXM_CELL_FULL) << child;
+    mixed |= (uint64_t)(cell == VXM_OCTREE_MIXED) << child;
+    full |= (uint64_t)(cell == VXM_OCTREE_FULL) << child;
   }
   return vxm_octree_growth_node(&l->growth, level, mixed, full, first);
 }

@@ -101,7 +101,7 @@ static void decode(const vxm_octree_reader *n, const int64_t at[3], unsigned cha
     bool is_one = *data++ == 1;
     vxm_octree_place(child, place);
     size_t first = (size_t)(4 * ((place[2] * VXM_NODE_SIDE + place[1]) * VXM_NODE_SIDE + place[0]));
-    for (uint64_t bits = brick.kind == VXM_CELL_MIXED ? tree->bricks[brick.index] : ~UINT64_C(0); bits;
+    for (uint64_t bits = brick.kind == VXM_OCTREE_MIXED ? tree->bricks[brick.index] : ~UINT64_C(0); bits;
          bits &= bits - 1) {
       size_t bit = (size_t)__builtin_ctzll(bits);
       put(n, values, first + (bit / 16 * VXM_NODE_SIDE + bit / 4 % 4) * VXM_NODE_SIDE + bit % 4, data);

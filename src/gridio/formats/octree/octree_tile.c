@@ -60,7 +60,7 @@ static void add_bricks(tile_reader *r, size_t count) {
   const unsigned char *data = take(r, count);
   for (size_t b = 0; b < count && r->growth->status == VXM_OK; b++) {
     uint64_t bits = vxm_load_le64(data + 8 * b);
-    if (vxm_octree_growth_brick(r->growth, bits) != VXM_CELL_MIXED)
+    if (vxm_octree_growth_brick(r->growth, bits) != VXM_OCTREE_MIXED)
       fail(r, from + 8 * b, "a brick is empty or full");
     r->voxels += (uint64_t)vxm_popcount(bits);
   }

@@ -169,7 +169,7 @@ static void child_place(int64_t out[3], const int64_t at[3], int level, unsigned
 }
 
 static uint64_t bits_of(const decoder *d, vxm_octree_part brick) {
-  return brick.kind == VXM_CELL_MIXED ? d->tree->bricks[brick.index] : ~UINT64_C(0);
+  return brick.kind == VXM_OCTREE_MIXED ? d->tree->bricks[brick.index] : ~UINT64_C(0);
 }
 
 /** Gives all voxels of a part one value. */
@@ -177,7 +177,7 @@ static void fill(const decoder *d, int level, vxm_octree_part part, const int64_
                  const unsigned char *value) {
   if (!d->field || !meets(d, at, side_of(level)))
     return;
-  if (part.kind == VXM_CELL_FULL) {
+  if (part.kind == VXM_OCTREE_FULL) {
     fill_cube(d, at, side_of(level), value);
     return;
   }

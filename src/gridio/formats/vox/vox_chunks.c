@@ -144,7 +144,7 @@ static vxm_status read_chunks(vxm_vox_file *file, const unsigned char *at, const
     status = add_chunk(file, name, at, at + content, error);
     at += (size_t)content + (size_t)children;
     if (status == VXM_OK)
-      status = vxm_ask(file->context, error);
+      status = vxm_check_cancelled(file->context, error);
   }
   return status;
 }

@@ -119,7 +119,7 @@ static vxm_status for_voxels(const loaded *l, put_fn put, void *payload, vxm_err
     for (size_t v = 0; v < instance->model->count && status == VXM_OK; v++) {
       const unsigned char *voxel = instance->model->voxels + 4 * v;
       int64_t at[3];
-      status = vxm_ask_at(v, l->file.context, error);
+      status = vxm_check_cancelled_at(v, l->file.context, error);
       if (voxel[3] == 0)
         continue;
       vxm_vox_voxel_at(at, instance, voxel);

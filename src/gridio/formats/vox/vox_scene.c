@@ -163,7 +163,7 @@ static vxm_status walk_all(walk *w, vxm_error *error) {
              : entry.node->type == VXM_VOX_GROUP   ? do_group(w, &entry, error)
                                                    : do_shape(w, &entry, error);
     if (status == VXM_OK)
-      status = vxm_ask(w->scene->context, error);
+      status = vxm_check_cancelled(w->scene->context, error);
   }
   return status;
 }

@@ -7,8 +7,8 @@
  * is set, one of them is to be: the one about which the surface there has its middle. Each meeting is a
  * record; the records of a link, square or cube are added up in any order.
  */
-#ifndef VXM_VOXEL_THIN_CENTRE_CELLS_H
-#define VXM_VOXEL_THIN_CENTRE_CELLS_H
+#ifndef VXM_VOXEL_THIN_DUAL_ELEMENTS_H
+#define VXM_VOXEL_THIN_DUAL_ELEMENTS_H
 
 #include "grid/octree.h"
 
@@ -19,7 +19,7 @@ enum { VXM_LINK_AXES = 3, VXM_LINK_EDGES = 9, VXM_LINK_DIRECTIONS = 13 };
 extern const int8_t vxm_link_step[VXM_LINK_DIRECTIONS][3];
 
 /** A link by its direction, a square by the axis across it, or a cube. */
-enum { VXM_CELL_SQUARE = VXM_LINK_DIRECTIONS, VXM_CELL_CUBE = VXM_CELL_SQUARE + 3 };
+enum { VXM_DUAL_SQUARE = VXM_LINK_DIRECTIONS, VXM_DUAL_CUBE = VXM_DUAL_SQUARE + 3 };
 
 /** The order in which voxels are chosen: what an earlier stage sets a later one need not. Links along the
  * axis along which a face's normal is longest come first, as they give a plate one voxel per column. */
@@ -38,7 +38,7 @@ enum { VXM_OFFSET_UNIT = 1 << 20 };
 /** The surface in a link, square or cube: a face that crosses the link or lies in the cube, a section in the
  * square. */
 typedef struct vxm_meeting {
-  uint64_t cell;     /**< vxm_cell_number */
+  uint64_t element;  /**< vxm_dual_number */
   int32_t offset[3]; /**< from the middle, along the axes that it spans, lowest first; parts of a voxel,
                         summed over the ends of a section or the corners of a face */
   uint32_t met; /**< in a square or a cube the voxels at the ends whose boxes the surface meets there, a bit
@@ -169,9 +169,9 @@ static inline bool vxm_view_set(const vxm_view *view, const int64_t voxel[3]) {
 
 /** The number of a cell: in which stage it comes and of which kind it is, above these bits, and its lowest
  * voxel, in the order of bits. Cells of an earlier stage have lower numbers. */
-enum { VXM_CELL_VOXEL_BITS = 59 };
+enum { VXM_DUAL_VOXEL_BITS = 59 };
 
-static inline uint64_t vxm_cell_number(const vxm_view *view, vxm_thin_stage stage, int kind,
+static inline uint64_t vxm_dual_number(const vxm_view *view, vxm_thin_stage stage, int kind,
                                        const int64_t lowest[3]) {
   uint64_t voxel = 0; /* it may lie one before the view */
   for (int i = 2; i >= 0; i--) {
@@ -179,31 +179,31 @@ static inline uint64_t vxm_cell_number(const vxm_view *view, vxm_thin_stage stag
     voxel =
         voxel * (uint64_t)(view->end[a] - view->begin[a] + 2) + (uint64_t)(lowest[a] - view->begin[a] + 1);
   }
-  return (uint64_t)(stage == VXM_THIN_DOMINANT_LINKS ? kind : kind + VXM_LINK_AXES) << VXM_CELL_VOXEL_BITS |
+  return (uint64_t)(stage == VXM_THIN_DOMINANT_LINKS ? kind : kind + VXM_LINK_AXES) << VXM_DUAL_VOXEL_BITS |
          voxel;
 }
 
-static inline int vxm_cell_kind(uint64_t number) {
-  int rank = (int)(number >> VXM_CELL_VOXEL_BITS);
+static inline int vxm_dual_kind(uint64_t number) {
+  int rank = (int)(number >> VXM_DUAL_VOXEL_BITS);
   return rank < VXM_LINK_AXES ? rank : rank - VXM_LINK_AXES;
 }
 
-static inline vxm_thin_stage vxm_cell_stage(uint64_t number) {
-  int kind = vxm_cell_kind(number);
+static inline vxm_thin_stage vxm_dual_stage(uint64_t number) {
+  int kind = vxm_dual_kind(number);
   if (kind < VXM_LINK_AXES)
-    return number >> VXM_CELL_VOXEL_BITS < VXM_LINK_AXES ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS;
+    return number >> VXM_DUAL_VOXEL_BITS < VXM_LINK_AXES ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS;
   return kind < VXM_LINK_EDGES        ? VXM_THIN_EDGE_LINKS
          : kind < VXM_LINK_DIRECTIONS ? VXM_THIN_CORNER_LINKS
-         : kind < VXM_CELL_CUBE       ? VXM_THIN_SQUARES
+         : kind < VXM_DUAL_CUBE       ? VXM_THIN_SQUARES
                                       : VXM_THIN_CUBES;
 }
 
 /** The voxels at the ends of a kind: 2 of a link, 4 of a square, 8 of a cube. */
-int vxm_cell_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]);
+int vxm_dual_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]);
 
 /** The ends of a square or a cube, by the axes it spans, in whose boxes a point lies that is `offset` from
  * the middle. */
-unsigned vxm_cell_boxes(const int32_t offset[3], int span);
+unsigned vxm_dual_boxes(const int32_t offset[3], int span);
 
 /** Whether one of some voxels is set; `*held`: whether the view holds one of them. */
 bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int count, bool *held);
@@ -215,6 +215,6 @@ bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int coun
  * @param count meetings of one link, square or cube
  * @return false if there is no such voxel, or one at the ends is set by now
  */
-bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]);
+bool vxm_dual_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]);
 
 #endif

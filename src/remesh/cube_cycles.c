@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "remesh/cell_cycles.h"
+#include "remesh/cube_cycles.h"
 
 #include <string.h>
 
@@ -11,8 +11,8 @@ static int link_between(int p, int q) {
 
 /** For each crossed link those that it is joined with, in the two faces at it. */
 typedef struct joined {
-  int8_t other[VXM_CELL_LINKS][2];
-  uint8_t count[VXM_CELL_LINKS];
+  int8_t other[VXM_CUBE_LINKS][2];
+  uint8_t count[VXM_CUBE_LINKS];
 } joined;
 
 static void join(joined *j, int p, int q) {
@@ -44,9 +44,9 @@ static void ring_of_face(int ring[4], int face) {
   ring[3] = side | c;
 }
 
-static void number_cycles(vxm_cell_cycles *out, const joined *j) {
+static void number_cycles(vxm_cube_cycles *out, const joined *j) {
   memset(out->cycle, VXM_NO_CYCLE, sizeof out->cycle);
-  for (int start = 0; start < VXM_CELL_LINKS; start++) {
+  for (int start = 0; start < VXM_CUBE_LINKS; start++) {
     if (j->count[start] == 0 || out->cycle[start] != VXM_NO_CYCLE)
       continue;
     for (int at = start, next; at >= 0; at = next) {
@@ -60,8 +60,8 @@ static void number_cycles(vxm_cell_cycles *out, const joined *j) {
   }
 }
 
-void vxm_cell_cycles_find(vxm_cell_cycles out[VXM_CELL_CONFIGURATIONS]) {
-  for (unsigned set = 0; set < VXM_CELL_CONFIGURATIONS; set++) {
+void vxm_cube_cycles_find(vxm_cube_cycles out[VXM_CUBE_CONFIGURATIONS]) {
+  for (unsigned set = 0; set < VXM_CUBE_CONFIGURATIONS; set++) {
     joined j = {.count = {0}};
     bool four[6];
     int ring[4];
@@ -69,7 +69,7 @@ void vxm_cell_cycles_find(vxm_cell_cycles out[VXM_CELL_CONFIGURATIONS]) {
       ring_of_face(ring, face);
       four[face] = join_in_face(&j, ring, set);
     }
-    out[set] = (vxm_cell_cycles){.count = 0};
+    out[set] = (vxm_cube_cycles){.count = 0};
     number_cycles(&out[set], &j);
     for (int face = 0; face < 6; face++) {
       ring_of_face(ring, face);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "voxel/thin/centre_cells.h"
+#include "voxel/thin/dual_elements.h"
 #include "voxel/thin/voxel_set.h"
 
 #include <string.h>
@@ -66,7 +66,7 @@ bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit) {
 
 /** The lowest voxel of a cell. */
 static void lowest_of(const vxm_view *view, uint64_t number, int64_t lowest[3]) {
-  number &= (UINT64_C(1) << VXM_CELL_VOXEL_BITS) - 1;
+  number &= (UINT64_C(1) << VXM_DUAL_VOXEL_BITS) - 1;
   for (int i = 0; i < 2; i++) {
     int a = view->axis[i];
     uint64_t size = (uint64_t)(view->end[a] - view->begin[a] + 2);
@@ -82,12 +82,12 @@ static int span_of(int kind, int axes[3]) {
   if (kind < VXM_LINK_DIRECTIONS)
     return 1;
   for (int a = 0; a < 3; a++)
-    if (kind == VXM_CELL_CUBE || a != kind - VXM_CELL_SQUARE)
+    if (kind == VXM_DUAL_CUBE || a != kind - VXM_DUAL_SQUARE)
       axes[count++] = a;
   return count;
 }
 
-int vxm_cell_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]) {
+int vxm_dual_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]) {
   if (kind < VXM_LINK_DIRECTIONS) {
     for (int a = 0; a < 3; a++) {
       ends[0][a] = lowest[a];
@@ -117,7 +117,7 @@ bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int coun
 }
 
 /** The ends in whose boxes a point lies that is `offset` from the middle. */
-unsigned vxm_cell_boxes(const int32_t offset[3], int span) {
+unsigned vxm_dual_boxes(const int32_t offset[3], int span) {
   static const unsigned upper[3] = {0xaa, 0xcc, 0xf0};
   unsigned boxes = (1U << (1 << span)) - 1;
   for (int s = 0; s < span; s++)
@@ -131,7 +131,7 @@ static unsigned add_up(const vxm_meeting *meetings, size_t count, int kind, int6
   for (size_t m = 0; m < count; m++) {
     for (int s = 0; s < 3; s++)
       sum[s] += meetings[m].offset[s];
-    met |= kind < VXM_LINK_DIRECTIONS ? vxm_cell_boxes(meetings[m].offset, 1) : meetings[m].met;
+    met |= kind < VXM_LINK_DIRECTIONS ? vxm_dual_boxes(meetings[m].offset, 1) : meetings[m].met;
   }
   return met;
 }
@@ -163,14 +163,14 @@ static bool choose_at_crossing(const vxm_view *view, int32_t offset, int axis, c
   return is_upper ? has_upper : has_lower;
 }
 
-bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]) {
-  int kind = vxm_cell_kind(meetings[0].cell), axes[3], span = span_of(kind, axes), best = -1;
+bool vxm_dual_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]) {
+  int kind = vxm_dual_kind(meetings[0].element), axes[3], span = span_of(kind, axes), best = -1;
   int64_t sum[3] = {0, 0, 0}, lowest[3], ends[8][3], nearest = 0;
   unsigned held;
-  lowest_of(view, meetings[0].cell, lowest);
+  lowest_of(view, meetings[0].element, lowest);
   if (count == 1 && kind < VXM_LINK_AXES)
     return choose_at_crossing(view, meetings->offset[0], kind, lowest, voxel);
-  int ends_count = vxm_cell_ends(ends, kind, lowest);
+  int ends_count = vxm_dual_ends(ends, kind, lowest);
   if (ends_set(view, (const int64_t(*)[3])ends, ends_count, &held))
     return false;
   held &= add_up(meetings, count, kind, sum);
