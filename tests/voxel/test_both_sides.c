@@ -84,7 +84,7 @@ static void both_sides_in_any_direction(void **state) {
     vxm_rng rng = {~seed};
     double angle[2] = {7 * vxm_rng_unit(&rng), 7 * vxm_rng_unit(&rng)};
     double c = cos(angle[0]), s = sin(angle[0]), d = cos(angle[1]), t = sin(angle[1]);
-    manner how = {.turn = {{c, -s * d, s * t}, {s, c * d, -c * t}, {0, t, d}}, .triangles = true};
+    manner how = {.turn = {{c, -s * d, s * t}, {s, c * d, -c * t}, {0, t, d}}, .triangles = true, .unit = 1};
     body b = random_body(&rng);
     vxm_soup *soup = new_soup(*state);
     add_body(soup, &b, &how, &rng);

@@ -448,6 +448,8 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
     done = note_turned(&o, changed);
   for (size_t i = 0; done && i < o.patch_count; i++)
     state->nonorientable += o.patches[i].conflicts > 0;
+  if (done && *changed)
+    vxm_repair_state_turn(state, o.turn);
   vxm_free(state->context, o.patches);
   vxm_free(state->context, o.queue);
   vxm_free(state->context, o.turn);
@@ -458,7 +460,5 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
     vxm_error_pass(error, &o.error);
     return o.error.code;
   }
-  if (*changed)
-    vxm_repair_state_turn(state);
   return VXM_OK;
 }

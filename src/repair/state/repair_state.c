@@ -67,14 +67,45 @@ void vxm_repair_state_move(vxm_repair_state *state) {
   state->has_extent = state->has_sums = false;
 }
 
-void vxm_repair_state_turn(vxm_repair_state *state) {
+static void drop_edges(vxm_repair_state *state) {
   if (state->has_counts)
     vxm_edges_destroy(&state->edges);
-  state->has_counts = state->has_edges = state->has_sums = state->is_manifold = false;
+  state->has_counts = state->has_edges = false;
+}
+
+/** Lets the edge map follow a face that was turned. */
+static void turn_sides(vxm_edges *edges, const vxm_soup *soup, size_t face) {
+  uint64_t begin = soup->offsets[face], end = soup->offsets[face + 1];
+  for (uint64_t i = begin, j = end; i + 1 < j; i++) {
+    j--;
+    uint32_t kept = edges->sides[i];
+    edges->sides[i] = edges->sides[j];
+    edges->sides[j] = kept;
+  }
+  for (uint64_t c = begin; c < end; c++) {
+    if (edges->sides[c] == VXM_NO_EDGE)
+      continue;
+    vxm_edge *edge = &edges->edges[edges->sides[c]];
+    edges->against -= edge->count == 2 && edge->forward != 1;
+    edge->forward += soup->indices[c] == edge->a ? 1 : UINT32_MAX;
+    edges->against += edge->count == 2 && edge->forward != 1;
+  }
+}
+
+void vxm_repair_state_turn(vxm_repair_state *state, const uint8_t *turned) {
+  /* without such edges there may turn out to be nothing but pairs, of which less is to be known */
+  bool follows = state->has_edges && state->edges.crowded > 0;
+  for (size_t f = 0; follows && f < state->soup->face_count; f++)
+    if (turned[f])
+      turn_sides(&state->edges, state->soup, f);
+  if (!follows)
+    drop_edges(state);
+  state->has_sums = state->is_manifold = false;
 }
 
 void vxm_repair_state_touch(vxm_repair_state *state) {
-  vxm_repair_state_turn(state);
+  drop_edges(state);
+  state->is_manifold = false;
   vxm_repair_state_move(state);
   if (state->has_patches)
     vxm_patches_destroy(&state->patches);

@@ -177,8 +177,9 @@ void vxm_repair_state_note_merge(vxm_repair_state *state, vxm_pass pass, const u
 void vxm_repair_state_note_marked(vxm_repair_state *state, vxm_pass pass, const uint8_t *marks);
 /** Says that faces have changed: what was derived from them is dropped. */
 void vxm_repair_state_touch(vxm_repair_state *state);
-/** Says that faces were turned, and nothing else. */
-void vxm_repair_state_turn(vxm_repair_state *state);
+/** Says that the faces marked in `turned` (face_count elements) run the other way from their first corner,
+ * and nothing else. */
+void vxm_repair_state_turn(vxm_repair_state *state, const uint8_t *turned);
 /** Says that vertices have moved, and no face has changed. */
 void vxm_repair_state_move(vxm_repair_state *state);
 
