@@ -140,7 +140,7 @@ static void check_divisions(vxm_context *context, drawing drawn, bool triangles)
     divided += d.walls;
     vxm_soup_destroy(soup);
   }
-  assert_true(divided > 100);
+  assert_true(4 * divided > (int)rounds_of(250));
 }
 
 static void chambers(void **state) {
