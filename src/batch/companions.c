@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/companions.h"
 #include "batch/digest.h"
+#include "batch/inputs.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,10 +16,6 @@ static char *path_of(const char *mesh, const char *name) {
   return asprintf(&path, "%.*s%s", folder, mesh, name) < 0 ? NULL : path;
 }
 
-static json_int_t modified_of(const struct stat *info) {
-  return (json_int_t)info->st_mtim.tv_sec * 1000000000 + info->st_mtim.tv_nsec;
-}
-
 static json_t *describe(const char *mesh, const char *name) {
   char digest[BATCH_DIGEST], *path = path_of(mesh, name);
   uint64_t bytes;
@@ -26,7 +23,7 @@ static json_t *describe(const char *mesh, const char *name) {
   json_t *described = NULL;
   if (path && stat(path, &info) == 0 && batch_digest_file(digest, &bytes, path))
     described = json_pack("{s:o, s:I, s:I, s:s}", "name", batch_json_string(name), "bytes", (json_int_t)bytes,
-                          "modified", modified_of(&info), "sha256", digest);
+                          "modified", (json_int_t)batch_modified(&info), "sha256", digest);
   free(path);
   return described;
 }
@@ -57,7 +54,7 @@ static bool is_same(const char *path, const json_t *described) {
   struct stat info;
   if (stat(path, &info) != 0 || info.st_size != json_integer_value(json_object_get(described, "bytes")))
     return false;
-  return modified_of(&info) == json_integer_value(json_object_get(described, "modified")) ||
+  return batch_modified(&info) == json_integer_value(json_object_get(described, "modified")) ||
          (before && batch_digest_file(digest, &bytes, path) && strcmp(digest, before) == 0);
 }
 

@@ -60,7 +60,7 @@ static const char *without_dots(const char *path) {
   return path;
 }
 
-static int64_t modified_of(const struct stat *info) {
+int64_t batch_modified(const struct stat *info) {
   return (int64_t)info->st_mtim.tv_sec * 1000000000 + info->st_mtim.tv_nsec;
 }
 
@@ -69,7 +69,7 @@ static bool add_file(batch_manifest *out, const char *id, const char *path, cons
   batch_item item = {.id = (char *)(uintptr_t)without_dots(id),
                      .path = (char *)(uintptr_t)path,
                      .bytes = (uint64_t)info->st_size,
-                     .modified = modified_of(info)};
+                     .modified = batch_modified(info)};
   return batch_manifest_add(out, &item, error);
 }
 
@@ -78,7 +78,7 @@ static bool add_archive(batch_manifest *out, const batch_inputs *inputs, const c
   batch_item archive = {.id = (char *)(uintptr_t)without_dots(id),
                         .path = (char *)(uintptr_t)path,
                         .bytes = (uint64_t)info->st_size,
-                        .modified = modified_of(info)};
+                        .modified = batch_modified(info)};
   return batch_archive_list(out, inputs, &archive, error);
 }
 

@@ -5,6 +5,8 @@
 
 #include "batch/manifest.h"
 
+#include <sys/stat.h>
+
 typedef struct batch_inputs {
   char *const *names;
   int count;
@@ -21,6 +23,8 @@ bool batch_is_several(const char *name);
 bool batch_is_mesh(const batch_inputs *inputs, const char *name);
 /** The extension behind the last dot, or "". */
 const char *batch_extension(const char *name);
+/** When a file was changed last, in nanoseconds since 1970. */
+int64_t batch_modified(const struct stat *info);
 /** Notes a file that was passed over. */
 void batch_pass_over(batch_manifest *manifest, const char *name);
 /** The same, and of what kind it is. */

@@ -173,8 +173,7 @@ static bool add_row(batch_manifest *out, const table *t, batch_error *error) {
                      .split = bare(cell(t, SPLIT)),
                      .options = cell(t, OPTIONS),
                      .bytes = is_there ? (uint64_t)info.st_size : 0,
-                     .modified =
-                         is_there ? (int64_t)info.st_mtim.tv_sec * 1000000000 + info.st_mtim.tv_nsec : 0};
+                     .modified = is_there ? batch_modified(&info) : 0};
   while (item.id[0] == '.' && item.id[1] == '/')
     item.id += 2;
   bool good = add_placed(out, &item, name, error);

@@ -118,11 +118,6 @@ static vxm_status cone(vxm_caps *caps, const step *steps, size_t count, vxm_erro
 /* ---- Edges between old vertices: each may be made once, so that no two triangles have the same corners ----
  */
 
-/** Never 0, as the vertices differ. */
-static uint64_t chord_key(uint32_t p, uint32_t q) {
-  return p < q ? (uint64_t)p << 32 | q : (uint64_t)q << 32 | p;
-}
-
 /** The slot that has the key, or a free one. */
 static size_t chord_slot(const uint64_t *chords, size_t slots, uint64_t key) {
   size_t slot = (size_t)vxm_mix(key) & (slots - 1);
@@ -132,7 +127,7 @@ static size_t chord_slot(const uint64_t *chords, size_t slots, uint64_t key) {
 }
 
 static bool is_edge(const vxm_caps *caps, uint32_t p, uint32_t q) {
-  uint64_t key = chord_key(p, q);
+  uint64_t key = vxm_edge_key(p, q);
   if (caps->chord_slots > 0 && caps->chords[chord_slot(caps->chords, caps->chord_slots, key)] == key)
     return true;
   return vxm_edges_find(caps->edges, p, q) < caps->edges->count;
@@ -154,7 +149,7 @@ static vxm_status add_chord(vxm_caps *caps, uint32_t p, uint32_t q, vxm_error *e
     caps->chords = chords;
     caps->chord_slots = slots;
   }
-  caps->chords[chord_slot(caps->chords, caps->chord_slots, chord_key(p, q))] = chord_key(p, q);
+  caps->chords[chord_slot(caps->chords, caps->chord_slots, vxm_edge_key(p, q))] = vxm_edge_key(p, q);
   caps->chord_count++;
   return VXM_OK;
 }
@@ -186,7 +181,7 @@ static bool is_flat(const vxm_caps *caps, const step *steps, size_t count) {
     vxm_vec3 q =
         vxm_vec3_between(vxm_caps_position(caps, vertex_after(steps, count, i)), centroid, caps->scale);
     vxm_vec3 cross = vxm_vec3_cross(p, q);
-    sum = (vxm_vec3){sum.x + cross.x, sum.y + cross.y, sum.z + cross.z};
+    sum = vxm_vec3_sum(sum, cross);
     area += vxm_vec3_length(cross);
   }
   return vxm_vec3_length(sum) >= FLAT * area;

@@ -178,7 +178,7 @@ void vxm_edges_destroy(vxm_edges *edges) {
 /* ---- Asking ---- */
 
 size_t vxm_edges_find(const vxm_edges *edges, uint32_t a, uint32_t b) {
-  uint64_t wanted = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+  uint64_t wanted = vxm_edge_key(a, b);
   size_t low = 0, high = edges->count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;

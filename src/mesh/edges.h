@@ -64,6 +64,11 @@ vxm_status vxm_edges_build_pairs(vxm_edges *out, vxm_context *context, const vxm
                                  vxm_error *error);
 void vxm_edges_destroy(vxm_edges *edges);
 
+/** The two vertices of an edge in one number, whatever their order; of two that differ never 0. */
+static inline uint64_t vxm_edge_key(uint32_t a, uint32_t b) {
+  return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
 /** Place of the edge between two vertices, in either order, or edges->count; logarithmic time. */
 size_t vxm_edges_find(const vxm_edges *edges, uint32_t a, uint32_t b);
 

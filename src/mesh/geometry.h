@@ -11,6 +11,10 @@ typedef struct vxm_vec3 {
   double x, y, z;
 } vxm_vec3;
 
+static inline vxm_vec3 vxm_vec3_sum(vxm_vec3 a, vxm_vec3 b) {
+  return (vxm_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
 static inline vxm_vec3 vxm_vec3_cross(vxm_vec3 a, vxm_vec3 b) {
   return (vxm_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

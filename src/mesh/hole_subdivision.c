@@ -128,7 +128,7 @@ static vxm_vec3 sum_of_areas(const vxm_rim *rim) {
   vxm_vec3 sum = {0, 0, 0};
   for (uint32_t i = 1; i + 1 < rim->count; i++) {
     vxm_vec3 area = triangle_area(rim, (const uint32_t[3]){0, i, i + 1});
-    sum = (vxm_vec3){sum.x + area.x, sum.y + area.y, sum.z + area.z};
+    sum = vxm_vec3_sum(sum, area);
   }
   return sum;
 }

@@ -44,8 +44,7 @@ static bool measure(sorting *s) {
     component *c = &s->components[s->label[f]];
     vxm_vec3 area = vxm_polygon_area(s->soup->positions, corner, count, s->frame.scale);
     c->area += vxm_vec3_length(area);
-    c->vector_area =
-        (vxm_vec3){c->vector_area.x + area.x, c->vector_area.y + area.y, c->vector_area.z + area.z};
+    c->vector_area = vxm_vec3_sum(c->vector_area, area);
     s->volume += vxm_polygon_cone(
         vxm_vec3_between(vxm_position(s->soup, corner[0]), s->frame.centre, s->frame.scale), area);
   }

@@ -202,3 +202,14 @@ vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error)
   *out = copy;
   return VXM_OK;
 }
+
+void vxm_soup_reverse_face(vxm_soup *soup, size_t face) {
+  uint32_t *corner = soup->indices + soup->offsets[face];
+  size_t count = (size_t)(soup->offsets[face + 1] - soup->offsets[face]);
+  for (size_t i = 1, j = count; i < j; i++) {
+    j--;
+    uint32_t kept = corner[i];
+    corner[i] = corner[j];
+    corner[j] = kept;
+  }
+}

@@ -58,6 +58,8 @@ void vxm_soup_destroy(vxm_soup *soup);
  * a repair has found out; warnings included. */
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
 
+/** Turns a face over: its corners run the other way from the first one on. */
+void vxm_soup_reverse_face(vxm_soup *soup, size_t face);
 /** Makes room for at least so many elements in all (half as many again where it grows). */
 vxm_status vxm_soup_reserve(vxm_soup *soup, size_t vertices, size_t faces, size_t corners, vxm_error *error);
 /** Adds a vertex; VXM_ERROR_RANGE beyond VXM_VERTICES_MAX. */

@@ -78,8 +78,9 @@ static inline void add_square(vxm_soup *soup, const manner *how, const int corne
   add_triangle(soup, face[cut], face[cut + 2], face[(cut + 3) % 4]);
 }
 
-/** Adds the unit squares between cells of the body and others, outward or, if it is turned, inward. */
-static inline void add_body(vxm_soup *soup, const body *b, const manner *how, vxm_rng *rng) {
+/** Adds the unit squares between cells of the body and others, one in `part` left out (0: none). */
+static inline void add_squares(vxm_soup *soup, const body *b, const manner *how, vxm_rng *rng, uint64_t part,
+                               bool inward) {
   for (int z = 0; z < SIDE; z++)
     for (int y = 0; y < SIDE; y++)
       for (int x = 0; x < SIDE; x++)
@@ -87,9 +88,14 @@ static inline void add_body(vxm_soup *soup, const body *b, const manner *how, vx
           int axis = side / 2, up = side % 2, beside[3] = {x, y, z}, corner[3] = {x, y, z};
           beside[axis] += up ? 1 : -1;
           corner[axis] += up;
-          if (!has_cell(b, beside))
-            add_square(soup, how, corner, axis, (up == 1) != b->turned, rng);
+          if (!has_cell(b, beside) && (part == 0 || vxm_rng_below(rng, part) > 0))
+            add_square(soup, how, corner, axis, (up == 1) != inward, rng);
         }
+}
+
+/** All of them, outward or, if the body is turned, inward. */
+static inline void add_body(vxm_soup *soup, const body *b, const manner *how, vxm_rng *rng) {
+  add_squares(soup, b, how, rng, 0, b->turned);
 }
 
 /** The cell that a point lies in well away from its sides, or CELLS beside all of them; -1 if it is too near

@@ -16,21 +16,6 @@ static body random_body(vxm_rng *rng) {
   return b;
 }
 
-/** Adds the squares of the body once more, one in `part` left out. */
-static void add_again(vxm_soup *soup, const body *b, const manner *how, vxm_rng *rng, uint64_t part,
-                      bool inward) {
-  for (int z = 0; z < SIDE; z++)
-    for (int y = 0; y < SIDE; y++)
-      for (int x = 0; x < SIDE; x++)
-        for (int side = 0; side < 6 && b->cells[cell_at(x, y, z)]; side++) {
-          int axis = side / 2, up = side % 2, beside[3] = {x, y, z}, corner[3] = {x, y, z};
-          beside[axis] += up ? 1 : -1;
-          corner[axis] += up;
-          if (!has_cell(b, beside) && (part == 0 || vxm_rng_below(rng, part) > 0))
-            add_square(soup, how, corner, axis, (up == 1) != inward, rng);
-        }
-}
-
 static int64_t count_cells(const body *b) {
   int64_t count = 0;
   for (size_t c = 0; c < CELLS; c++)
@@ -56,7 +41,7 @@ static void assert_as_once(vxm_context *context, uint64_t seed, uint64_t part, b
   body b = random_body(&rng);
   vxm_soup *soup = new_soup(context), *prepared;
   add_body(soup, &b, &how, &rng);
-  add_again(soup, &b, &how, &rng, part, inward);
+  add_squares(soup, &b, &how, &rng, part, inward);
   assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
   int wrong = count_wrong(prepared, &how, b.cells);
   if (wrong > 0)
@@ -88,7 +73,7 @@ static void both_sides_in_any_direction(void **state) {
     body b = random_body(&rng);
     vxm_soup *soup = new_soup(*state);
     add_body(soup, &b, &how, &rng);
-    add_again(soup, &b, &how, &rng, 0, true);
+    add_squares(soup, &b, &how, &rng, 0, true);
     assert_volume(soup, (double)count_cells(&b), "turned cells", seed);
     vxm_soup_destroy(soup);
   }

@@ -154,20 +154,19 @@ static void find_rims(walling *w) {
 /** The faces of each group that have just one side which looks out, one group behind the other. */
 static vxm_status list_skins(walling *w, vxm_error *error) {
   vxm_status status = VXM_OK;
-  const size_t faces = w->soup->face_count, groups = w->groups.count;
-  w->skin_begin = vxm_repair_state_scratch(w->state, groups + 1, sizeof *w->skin_begin, &status, error);
+  const size_t faces = w->soup->face_count;
+  uint8_t *is_skin = vxm_repair_state_scratch(w->state, faces, sizeof *is_skin, &status, error);
+  if (is_skin)
+    w->skin_begin =
+        vxm_repair_state_scratch(w->state, w->groups.count + 1, sizeof *w->skin_begin, &status, error);
   if (w->skin_begin)
     w->skin = vxm_repair_state_scratch(w->state, faces, sizeof *w->skin, &status, error);
-  if (status != VXM_OK)
-    return status;
-  for (size_t f = 0; f < faces; f++)
-    w->skin_begin[w->groups.of_face[f]] += looks_out(w, f, 0) != looks_out(w, f, 1);
-  for (size_t g = 0; g < groups; g++)
-    w->skin_begin[g + 1] += w->skin_begin[g]; /* where the skin of each ends, so far */
-  for (size_t f = faces; f-- > 0;)
-    if (looks_out(w, f, 0) != looks_out(w, f, 1))
-      w->skin[--w->skin_begin[w->groups.of_face[f]]] = f;
-  return VXM_OK;
+  for (size_t f = 0; w->skin && f < faces; f++)
+    is_skin[f] = looks_out(w, f, 0) != looks_out(w, f, 1);
+  if (w->skin)
+    vxm_edge_groups_list(&w->groups, faces, is_skin, w->skin_begin, w->skin);
+  vxm_free(w->state->context, is_skin);
+  return status;
 }
 
 /** Whether most of the rays from the middle of a wall find it within the skin. */
@@ -243,14 +242,6 @@ static int facing(walling *w, size_t face) {
   return (int)looks_out(w, face, 0) - (int)looks_out(w, face, 1);
 }
 
-static void reverse(vxm_soup *soup, size_t face) {
-  for (uint64_t i = soup->offsets[face] + 1, j = soup->offsets[face + 1] - 1; i < j; i++, j--) {
-    uint32_t kept = soup->indices[i];
-    soup->indices[i] = soup->indices[j];
-    soup->indices[j] = kept;
-  }
-}
-
 /** Turns the skin of each group as most of it is, so that cavities of it, which are turned against it, stay
  * such. */
 static vxm_status turn_skin(walling *w, vxm_error *error) {
@@ -267,7 +258,7 @@ static vxm_status turn_skin(walling *w, vxm_error *error) {
         vxm_repair_state_scratch(state, w->soup->face_count, sizeof *state->turned, &status, error);
   for (size_t f = 0; state->turned && f < w->soup->face_count; f++)
     if (facing(w, f) == (finding_of(w, f)->outward < 0 ? 1 : -1)) {
-      reverse(state->soup, f);
+      vxm_soup_reverse_face(state->soup, f);
       state->turned[f] ^= VXM_TURNED;
     }
   return status;

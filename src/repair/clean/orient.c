@@ -141,18 +141,6 @@ static bool take_patches(orienting *o) {
 
 /* ---- Turning ---- */
 
-/** Reverses a face about its first corner. */
-static void reverse(vxm_soup *soup, size_t face) {
-  uint32_t *corner = soup->indices + soup->offsets[face];
-  size_t count = (size_t)(soup->offsets[face + 1] - soup->offsets[face]);
-  for (size_t i = 1, j = count; i < j; i++) {
-    j--;
-    uint32_t kept = corner[i];
-    corner[i] = corner[j];
-    corner[j] = kept;
-  }
-}
-
 static vxm_vec3 area_of(const orienting *o, size_t face) {
   size_t count;
   const uint32_t *corner = vxm_face(o->soup, face, &count);
@@ -160,8 +148,7 @@ static vxm_vec3 area_of(const orienting *o, size_t face) {
 }
 
 static void add_area(patch *p, vxm_vec3 area) {
-  p->vector_area =
-      (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
+  p->vector_area = vxm_vec3_sum(p->vector_area, area);
 }
 
 /** The areas of patches that are consistent. */
@@ -197,7 +184,7 @@ static bool make_consistent(orienting *o) {
     else
       o->turn[f] ^= 2 * p->turned_area > p->area;
     if (o->turn[f])
-      reverse(o->soup, f);
+      vxm_soup_reverse_face(o->soup, f);
     add_area(p, area_of(o, f));
   }
   return o->error.code == VXM_OK;
@@ -381,7 +368,7 @@ static bool turn_outward(orienting *o) {
     for (size_t f = 0; any && f < o->soup->face_count; f++)
       if (over[o->label[f]]) {
         o->turn[f] ^= 1;
-        reverse(o->soup, f);
+        vxm_soup_reverse_face(o->soup, f);
       }
   }
   done = o->error.code == VXM_OK;

@@ -176,7 +176,7 @@ static void look_at_planes(aligning *a) {
     polygon *p = &a->polygons[vxm_set_of(a->parent, t)];
     vxm_vec3 area = area_of(a, a->triangles[t]);
     p->plane = true;
-    p->area = (vxm_vec3){p->area.x + area.x, p->area.y + area.y, p->area.z + area.z};
+    p->area = vxm_vec3_sum(p->area, area);
   }
   for (size_t t = 0; t < a->triangle_count; t++) {
     polygon *p = &a->polygons[vxm_set_of(a->parent, t)];

@@ -57,7 +57,7 @@ static int side_of(const vxm_repeats *d, size_t face, size_t other) {
   corner = vxm_face(d->soup, other, &count);
   for (size_t c = 0; c < count; c++) {
     vxm_vec3 to = vxm_vec3_between(vxm_position(d->soup, corner[c]), origin, d->scale);
-    sum = (vxm_vec3){sum.x + to.x, sum.y + to.y, sum.z + to.z};
+    sum = vxm_vec3_sum(sum, to);
   }
   double above = vxm_vec3_dot(normal, sum), none = 1e-9 * vxm_vec3_length(normal) * vxm_vec3_length(sum);
   return above > none ? 1 : above < -none ? -1 : 0;

@@ -155,7 +155,8 @@ static bool peel_shared(vxm_repeats *d) {
     } else if (--keep[turned] == 1)
       d->kinds[face] = VXM_KIND_PLAIN;
   }
-  vxm_repeats_find_fins(d);
+  if (!found) /* the walls are no fins */
+    vxm_repeats_find_fins(d);
   return found;
 }
 

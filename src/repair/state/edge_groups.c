@@ -82,6 +82,17 @@ vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *state, v
   return status;
 }
 
+void vxm_edge_groups_list(const vxm_edge_groups *groups, size_t face_count, const uint8_t *chosen,
+                          size_t *begin, size_t *faces) {
+  for (size_t f = 0; f < face_count; f++)
+    begin[groups->of_face[f]] += chosen[f];
+  for (size_t g = 0; g < groups->count; g++)
+    begin[g + 1] += begin[g]; /* where those of each end, so far */
+  for (size_t f = face_count; f-- > 0;)
+    if (chosen[f])
+      faces[--begin[groups->of_face[f]]] = f;
+}
+
 void vxm_edge_groups_destroy(vxm_edge_groups *groups, vxm_context *context) {
   vxm_free(context, groups->groups);
   vxm_free(context, groups->of_face);

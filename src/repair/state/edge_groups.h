@@ -27,6 +27,16 @@ typedef struct vxm_edge_groups {
 vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *state, vxm_error *error);
 void vxm_edge_groups_destroy(vxm_edge_groups *groups, vxm_context *context);
 
+/**
+ * Lists the faces that are chosen, one group behind the other.
+ *
+ * @param chosen       per face: 1 or 0
+ * @param[out] begin   groups->count + 1 zeros: where those of each group begin
+ * @param[out] faces   room for all that are chosen
+ */
+void vxm_edge_groups_list(const vxm_edge_groups *groups, size_t face_count, const uint8_t *chosen,
+                          size_t *begin, size_t *faces);
+
 /** The representative of a set, with path halving; `parent` of a new set is itself. */
 static inline size_t vxm_set_of(size_t *parent, size_t member) {
   while (parent[member] != member)

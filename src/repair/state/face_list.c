@@ -18,7 +18,7 @@ vxm_status vxm_face_list_create(vxm_face_list *out, vxm_repair_state *state, siz
   return status;
 }
 
-void vxm_face_list_free(vxm_face_list *list, vxm_repair_state *state) {
+void vxm_face_list_destroy(vxm_face_list *list, vxm_repair_state *state) {
   vxm_free(state->context, list->turned);
   vxm_free(state->context, list->parts);
   vxm_free(state->context, list->tags);

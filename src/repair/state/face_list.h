@@ -12,11 +12,11 @@ typedef struct vxm_face_list {
   size_t count, corners;
 } vxm_face_list;
 
-/** Makes room for so many faces and corners. @param[out] out freed with vxm_face_list_free, also after a
+/** Makes room for so many faces and corners. @param[out] out freed with vxm_face_list_destroy, also after a
  * failure */
 vxm_status vxm_face_list_create(vxm_face_list *out, vxm_repair_state *state, size_t faces, size_t corners,
                                 vxm_error *error);
-void vxm_face_list_free(vxm_face_list *list, vxm_repair_state *state);
+void vxm_face_list_destroy(vxm_face_list *list, vxm_repair_state *state);
 /** Adds a face that is (a piece of) one of the soup. */
 void vxm_face_list_put(vxm_face_list *list, const vxm_repair_state *state, size_t face,
                        const uint32_t *corner, size_t corners);

@@ -36,20 +36,6 @@ static int by_group_then_face(const void *a, const void *b) {
   return p->set.face < q->set.face ? -1 : p->set.face > q->set.face;
 }
 
-static void list_faces(asking *a, const uint8_t *bound) {
-  size_t faces = a->state->soup->face_count;
-  for (size_t f = 0; f < faces; f++)
-    a->begin[a->groups->of_face[f] + 1] += bound[f];
-  for (size_t g = 0; g < a->groups->count; g++)
-    a->begin[g + 1] += a->begin[g];
-  for (size_t f = 0; f < faces; f++)
-    if (bound[f])
-      a->faces[a->begin[a->groups->of_face[f]]++] = f;
-  for (size_t g = a->groups->count; g > 0; g--)
-    a->begin[g] = a->begin[g - 1];
-  a->begin[0] = 0;
-}
-
 /** Puts the faces of groups that are balanced, or of those that are not, behind `sorted`. */
 static vxm_point_in_mesh gather(const asking *a, bool balanced, size_t *sorted) {
   size_t count = 0;
@@ -258,7 +244,7 @@ vxm_status vxm_face_set_sides_find(vxm_face_set_side *sets, size_t count, vxm_re
     a.sorted = vxm_repair_state_scratch(state, a.alone ? 0 : state->soup->face_count, sizeof *a.sorted,
                                         &status, error);
   if (a.sorted) {
-    list_faces(&a, bound);
+    vxm_edge_groups_list(groups, state->soup->face_count, bound, a.begin, a.faces);
     if (!a.alone)
       list_surroundings(&a, open);
     for (size_t i = 0; i < count; i++)

@@ -54,7 +54,7 @@ static vxm_status split_marked(vxm_repair_state *state, const uint8_t *wanted, v
     status = split(&made, state, wanted, error);
   if (status == VXM_OK)
     vxm_face_list_exchange(&made, state);
-  vxm_face_list_free(&made, state);
+  vxm_face_list_destroy(&made, state);
   return status;
 }
 

@@ -142,7 +142,7 @@ static bool is_folded(const search *s, const rim *p, const rim *q) {
     vxm_vec3 along = between(s, both[k]->b, both[k]->a), sum = {0, 0, 0};
     for (size_t c = 0; c < count; c++) {
       vxm_vec3 to = between(s, corner[c], both[k]->a);
-      sum = (vxm_vec3){sum.x + to.x, sum.y + to.y, sum.z + to.z};
+      sum = vxm_vec3_sum(sum, to);
     }
     double part = vxm_vec3_dot(sum, along) / vxm_vec3_dot(along, along);
     out[k] = (vxm_vec3){sum.x - part * along.x, sum.y - part * along.y, sum.z - part * along.z};

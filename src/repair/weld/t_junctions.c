@@ -54,10 +54,6 @@ static const uint32_t NONE = UINT32_MAX;
 
 /* ---- The table of splits ---- */
 
-static uint64_t key_of(uint32_t a, uint32_t b) {
-  return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
 static size_t slot_of(const vxm_edge_splits *splits, uint64_t key) {
   size_t slot = vxm_mix(key) & (splits->slots - 1);
   while (splits->keys[slot] != UINT64_MAX && splits->keys[slot] != key)
@@ -68,11 +64,11 @@ static size_t slot_of(const vxm_edge_splits *splits, uint64_t key) {
 uint32_t vxm_edge_split_at(const vxm_edge_splits *splits, uint32_t a, uint32_t b) {
   if (splits->slots == 0)
     return VXM_NO_VERTEX;
-  size_t slot = slot_of(splits, key_of(a, b));
+  size_t slot = slot_of(splits, vxm_edge_key(a, b));
   return splits->keys[slot] == UINT64_MAX ? VXM_NO_VERTEX : splits->middle[slot];
 }
 
-void vxm_edge_splits_free(vxm_edge_splits *splits, vxm_context *context) {
+void vxm_edge_splits_destroy(vxm_edge_splits *splits, vxm_context *context) {
   vxm_free(context, splits->middle);
   vxm_free(context, splits->keys);
   *splits = (vxm_edge_splits){0};
@@ -88,7 +84,7 @@ static bool make_room(search *s) {
   grown.keys = vxm_alloc(s->state->context, grown.slots, sizeof *grown.keys, &s->error);
   grown.middle = vxm_alloc(s->state->context, grown.slots, sizeof *grown.middle, &s->error);
   if (!grown.keys || !grown.middle) {
-    vxm_edge_splits_free(&grown, s->state->context);
+    vxm_edge_splits_destroy(&grown, s->state->context);
     return false;
   }
   memset(grown.keys, 0xff, grown.slots * sizeof *grown.keys);
@@ -98,7 +94,7 @@ static bool make_room(search *s) {
       grown.keys[slot] = splits->keys[i];
       grown.middle[slot] = splits->middle[i];
     }
-  vxm_edge_splits_free(splits, s->state->context);
+  vxm_edge_splits_destroy(splits, s->state->context);
   *splits = grown;
   return true;
 }
@@ -268,7 +264,7 @@ static bool divide(search *s, uint32_t from, uint32_t longer, uint32_t shorter, 
   if (s->divided_count == CHAIN_MAX || vxm_edge_split_at(s->splits, from, end) != VXM_NO_VERTEX ||
       vxm_edge_split_at(s->splits, middle, end) != VXM_NO_VERTEX)
     return false;
-  s->divided[s->divided_count] = key_of(from, end);
+  s->divided[s->divided_count] = vxm_edge_key(from, end);
   s->middle[s->divided_count++] = middle;
   s->chain[s->chain_count++] = middle;
   int64_t balance = balance_from(s, longer, from);
@@ -323,7 +319,7 @@ static bool split_spans(search *s) {
   for (size_t i = 0; i + 2 < s->chain_count && s->chain_count <= SPAN_MAX; i++)
     for (size_t j = i + 2; j < s->chain_count; j++)
       if (vxm_edges_find(edges, s->chain[i], s->chain[j]) < edges->count &&
-          !add_split(s, key_of(s->chain[i], s->chain[j]), s->chain[i + 1]))
+          !add_split(s, vxm_edge_key(s->chain[i], s->chain[j]), s->chain[i + 1]))
         return false;
   return true;
 }

@@ -24,14 +24,14 @@ typedef struct vxm_edge_splits {
  * Vertices lie on an edge if they are no farther from it than what automatic welding bridges, and far nearer
  * to it than to its ends, and than it is to the corners beyond it. Time and memory are linear in the edges.
  *
- * @param[out] out freed with vxm_edge_splits_free, also after a failure
+ * @param[out] out freed with vxm_edge_splits_destroy, also after a failure
  * @param is_signed open are edges with more sides one way than the other, and what goes together runs
  * opposite ways, so that bodies which touch there do not get mixed up; else those with an odd number of sides
  * are, as faces may be turned against each other
  */
 vxm_status vxm_t_junctions_find(vxm_edge_splits *out, vxm_repair_state *state, bool is_signed,
                                 vxm_error *error);
-void vxm_edge_splits_free(vxm_edge_splits *splits, vxm_context *context);
+void vxm_edge_splits_destroy(vxm_edge_splits *splits, vxm_context *context);
 
 /** The vertex at which an edge is to be divided, or VXM_NO_VERTEX. */
 uint32_t vxm_edge_split_at(const vxm_edge_splits *splits, uint32_t a, uint32_t b);

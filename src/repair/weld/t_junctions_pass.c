@@ -88,8 +88,7 @@ static int first_side(const outline *o) {
   int chosen = -1;
   uint64_t least = UINT64_MAX;
   for (int i = 0; i < 3; i++) {
-    uint32_t a = o->corners[o->begin[i]], b = o->corners[o->begin[i + 1] % o->count];
-    uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+    uint64_t key = vxm_edge_key(o->corners[o->begin[i]], o->corners[o->begin[i + 1] % o->count]);
     if (o->begin[i + 1] - o->begin[i] > 1 && key < least) {
       least = key;
       chosen = i;
@@ -190,12 +189,12 @@ static vxm_status divide_once(vxm_repair_state *state, bool is_signed, bool *cha
   }
   if (*changed)
     state->counts[VXM_PASS_T_JUNCTIONS] += (int64_t)d.splits.count;
-  vxm_face_list_free(&d.made, state);
+  vxm_face_list_destroy(&d.made, state);
   vxm_free(state->context, d.face.stack);
   vxm_free(state->context, d.face.corners);
   vxm_free(state->context, d.seen);
   vxm_free(state->context, d.ends);
-  vxm_edge_splits_free(&d.splits, state->context);
+  vxm_edge_splits_destroy(&d.splits, state->context);
   return status;
 }
 

@@ -54,10 +54,6 @@ static void give_roles(const vxm_repair_state *state, double tolerance, uint8_t 
   }
 }
 
-static uint64_t edge_key(uint32_t a, uint32_t b) {
-  return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
 /**
  * Keeps only merges that close something: the groups at the two ends of an edge in which at least two
  * boundary edges would come together. Both ends are kept together, so that what is kept does close.
@@ -67,7 +63,7 @@ static void keep_closing(const vxm_repair_state *state, uint32_t *map, uint64_t 
   size_t count = 0;
   for (size_t e = 0; e < edges->count; e++)
     if (edges->edges[e].count == 1)
-      keys[count++] = edge_key(map[edges->edges[e].a], map[edges->edges[e].b]);
+      keys[count++] = vxm_edge_key(map[edges->edges[e].a], map[edges->edges[e].b]);
   vxm_sort_keys(keys, keys + count, count);
   for (size_t i = 1; i < count; i++)
     if (keys[i] == keys[i - 1])
