@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """octree_nodes.py VOXMEND FOLDER: .octree files of values are the bytes of those that 'convert' makes of .npy files, and the
-reports say the same. Samples, and random bodies and sheets that overlap, each a group of its own."""
+reports say the same. Samples, and random bodies and sheets that overlap, each a group of its own. EVERY=N tries every N-th of
+the random ones."""
 import json
 import os
 import random
@@ -93,7 +94,7 @@ with open("colored.ply", "w") as out:
 for options in (["-r", "40"], ["-r", "61x20x33", "--fit", "tight", "--mode", "surface", "--threads", "2"], ["-r", "30", "--color-average"]):
     check("colored.ply", "--color", "mesh", *options)
 rules = [[], ["--method", "x"], ["--vote", "majority"], ["--parts", "whole"], ["--thin", "26"], ["--method", "winding"]]
-for seed in range(60):
+for seed in range(0, 60, int(os.environ.get("EVERY", 1))):
     random_mesh("random.obj", seed)
     values = VALUES[seed % len(VALUES)]
     rule = [] if "surface" in values or "unsigned" in values else rules[seed // 3 % len(rules)]
