@@ -172,6 +172,41 @@ static void test_a_sheet(void **state) {
   }
 }
 
+/** Turns by degrees about x, y and z, one after the other. */
+static void turn_soup(vxm_soup *soup, const double degrees[3]) {
+  for (size_t v = 0; v < soup->vertex_count; v++)
+    for (int a = 0; a < 3; a++) {
+      double *p = soup->positions + 3 * v, angle = degrees[a] * M_PI / 180;
+      double y = p[(a + 1) % 3], z = p[(a + 2) % 3];
+      p[(a + 1) % 3] = cos(angle) * y - sin(angle) * z;
+      p[(a + 2) % 3] = sin(angle) * y + cos(angle) * z;
+    }
+}
+
+/** A sheet bent to half a pipe, whose other half is open, encloses nothing, though lines along one axis do
+ * say so: it lies along the axes, or nearly, or across two of them. */
+static void test_a_bent_sheet(void **state) {
+  (void)state;
+  enum { CUTS = 24 };
+  const double turns[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},   {1, 2, 3},
+                             {5, 5, 5}, {0, 5, 0}, {0, 0, 5}, {10, 20, 0}, {0, 45, 0}};
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
+  for (size_t i = 0; i < sizeof turns / sizeof *turns; i++) {
+    vxm_soup *soup = shape_empty(context);
+    for (uint32_t n = 0; n <= CUTS; n++)
+      for (int end = -1; end <= 1; end += 2)
+        shape_vertex(soup, end * 1.2, 0.8 * cos(M_PI * n / CUTS), 0.8 * sin(M_PI * n / CUTS));
+    for (uint32_t n = 0; n < CUTS; n++)
+      shape_face(soup, (uint32_t[]){2 * n, 2 * n + 1, 2 * n + 3, 2 * n + 2}, 4);
+    turn_soup(soup, turns[i]);
+    vxm_grid *grid = voxelize(soup, options, NULL);
+    assert_int_equal(vxm_grid_count(grid), 0);
+    vxm_grid_destroy(grid);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /* ---- Cavities ---- */
 
 static void turn_faces(vxm_soup *soup, size_t first) {
@@ -474,6 +509,7 @@ int main(void) {
       cmocka_unit_test(test_holes_are_capped),
       cmocka_unit_test(test_panels_make_a_body),
       cmocka_unit_test(test_a_sheet),
+      cmocka_unit_test(test_a_bent_sheet),
       cmocka_unit_test(test_cavities),
       cmocka_unit_test(test_winding_method_equals_parity_on_closed_meshes),
       cmocka_unit_test(test_patches_are_turned_outward),

@@ -60,7 +60,8 @@ bool vxm_odd_words_next(vxm_odd_words *words);
 /**
  * Takes the votes of axes that abstain out of a slice. How many of the three say inside then tells all that
  * the votes do: three where no axis abstains and all say inside; none where two axes or three are left and
- * say outside; elsewhere one or two, and two where most of the axes that are left say inside.
+ * say outside; elsewhere one or two, and two where two axes or three are left and most of these say inside:
+ * what a single axis says is no evidence, as beside a bent sheet.
  *
  * @param voters words of the slice for the fast, the middle and the slow axis
  */
