@@ -88,6 +88,18 @@ static vxm_status send_grid(vxm_context *context, const vxm_reader *reader, cons
   return status == VXM_OK && !vxm_wire_send_end(&sender) ? cut_off(error) : status;
 }
 
+static uint64_t number(char **arguments, int which) {
+  return strtoull(arguments[which], NULL, 10);
+}
+
+/** A double by its bits. */
+static double real(char **arguments, int which) {
+  const uint64_t bits = number(arguments, which);
+  double value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
 static vxm_status read_file(vxm_context *context, const vxm_reader *reader, char **arguments,
                             vxm_error *error) {
   unsigned char *data;
@@ -101,7 +113,7 @@ static vxm_status read_file(vxm_context *context, const vxm_reader *reader, char
                                 .size = (size_t)size,
                                 .name = arguments[VXM_READER_ARG_NAME],
                                 .hint = arguments[VXM_READER_ARG_HINT],
-                                .deflection = strtod(arguments[VXM_READER_ARG_DEFLECTION], NULL),
+                                .deflection = real(arguments, VXM_READER_ARG_DEFLECTION),
                                 .path = VXM_MEMORY_NAME,
                                 .fetch = fetch,
                                 .payload = &unfetched};
@@ -110,10 +122,6 @@ static vxm_status read_file(vxm_context *context, const vxm_reader *reader, char
                         : send_grid(context, reader, &request, error);
   vxm_free(context, data);
   return status;
-}
-
-static uint64_t number(char **arguments, int which) {
-  return strtoull(arguments[which], NULL, 10);
 }
 
 static vxm_status serve(vxm_context *context, char **arguments, vxm_error *error) {

@@ -91,9 +91,11 @@ static void set_clock(vxm_process *reader, const allowance *allowed) {
 
 static vxm_status start(vxm_process *reader, const char *program, const char *module, const conversation *c,
                         vxm_error *error) {
-  char parent[24], deflection[40], memory[24], memory_max[24], seconds[24];
+  char parent[24], deflection[24], memory[24], memory_max[24], seconds[24];
+  uint64_t bits; /* the same text in every locale */
+  memcpy(&bits, &c->request->deflection, sizeof bits);
   snprintf(parent, sizeof parent, "%ld", (long)getpid());
-  snprintf(deflection, sizeof deflection, "%a", c->request->deflection);
+  snprintf(deflection, sizeof deflection, "%" PRIu64, bits);
   snprintf(memory, sizeof memory, "%" PRIu64, c->allowed.memory);
   snprintf(memory_max, sizeof memory_max, "%" PRIu64, c->allowed.memory_max);
   snprintf(seconds, sizeof seconds, "%" PRIu64, c->allowed.seconds);

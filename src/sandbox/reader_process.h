@@ -47,7 +47,7 @@ enum {
   VXM_READER_ARG_PARENT, /**< number of our process */
   VXM_READER_ARG_NAME,   /**< of the file */
   VXM_READER_ARG_HINT,
-  VXM_READER_ARG_DEFLECTION, /**< %a */
+  VXM_READER_ARG_DEFLECTION, /**< the bits of the double, in decimal */
   VXM_READER_ARG_LOOK,       /**< "1" if the appearance of a mesh is wanted, else "0" */
   VXM_READER_ARG_MEMORY,     /**< bytes that it may hold */
   VXM_READER_ARG_MEMORY_MAX, /**< to which we may raise that, as further files come */
