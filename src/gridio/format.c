@@ -165,6 +165,9 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
   if (!format)
     format = vxm_grid_format_of_path(path);
   *out = format;
+  if (!format && input->size >= 2 && memcmp(input->data, "\x1f\x8b", 2) == 0)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
+                       "compressed by gzip: unpack it first, or read a .nii.gz from a file of that name");
   if (!format)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
                        "not a grid: neither content nor name are those of %s",

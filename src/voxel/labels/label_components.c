@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels/label_components.h"
 #include "mesh/components.h"
+#include "mesh/containment.h"
 #include "mesh/edges.h"
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
@@ -246,6 +247,69 @@ static vxm_status take_bodies(builder *b) {
   return VXM_OK;
 }
 
+/* ---- Parts ---- */
+
+/** Makes each part a body. */
+static vxm_status find_parts(builder *b) {
+  const vxm_face_labels *l = b->labelling;
+  b->body_count = l->table.count;
+  b->component = allocate(b, b->soup->face_count, sizeof *b->component);
+  b->bodies = allocate(b, b->body_count, sizeof *b->bodies);
+  if (!b->component || !b->bodies)
+    return b->error.code;
+  for (size_t label = 1; label <= l->table.count; label++)
+    for (size_t i = l->begin[label - 1]; i < l->begin[label]; i++)
+      b->component[l->faces[i]] = (uint32_t)label - 1;
+  return find_open(b);
+}
+
+/**
+ * Which parts are skins of cavities: those that are wound against the body around them. What lies in a cavity
+ * is a body again.
+ *
+ * @param chain room for as many numbers as there are parts
+ */
+static void find_cavities(const vxm_containment *inside, bool *is_cavity, bool *is_known, uint32_t *chain) {
+  for (size_t p = 0; p < inside->count; p++) {
+    size_t length = 0;
+    for (uint32_t at = (uint32_t)p; at != VXM_NO_COMPONENT && !is_known[at]; at = inside->parent[at])
+      chain[length++] = at;
+    while (length-- > 0) { /* from the outermost on */
+      const uint32_t part = chain[length], around = inside->parent[part];
+      is_cavity[part] = around != VXM_NO_COMPONENT && !is_cavity[around] &&
+                        (inside->volume[part] < 0) != (inside->volume[around] < 0);
+      is_known[part] = true;
+    }
+  }
+}
+
+/** A part that is the skin of a cavity claims nothing: what stands in the cavity is not its own. */
+static vxm_status empty_cavities(builder *b) {
+  vxm_context *context = b->soup->context;
+  vxm_containment inside = {.context = NULL};
+  vxm_status status = find_parts(b);
+  uint8_t *is_solid = allocate(b, b->body_count, sizeof *is_solid);
+  bool *is_cavity = allocate(b, b->body_count, sizeof *is_cavity);
+  bool *is_known = allocate(b, b->body_count, sizeof *is_known);
+  uint32_t *chain = allocate(b, b->body_count, sizeof *chain);
+  if (status == VXM_OK && is_solid && is_cavity && is_known && chain) {
+    for (size_t p = 0; p < b->body_count; p++)
+      is_solid[p] = !b->bodies[p].is_open;
+    status = vxm_containment_build(&inside, b->soup, b->component, b->body_count, is_solid, &b->error);
+  }
+  if (b->error.code == VXM_OK)
+    find_cavities(&inside, is_cavity, is_known, chain);
+  for (size_t p = 0; p < b->body_count && b->error.code == VXM_OK; p++)
+    if (is_cavity[p])
+      b->out->pieces[p].face_end = b->out->pieces[p].first_face;
+  vxm_containment_destroy(&inside);
+  vxm_free(context, chain);
+  vxm_free(context, is_known);
+  vxm_free(context, is_cavity);
+  vxm_free(context, is_solid);
+  return b->error.code;
+}
+
 /* ---- Boxes ---- */
 
 static void add_to_box(vxm_label_component *piece, const vxm_lattice *lattice, const double p[3]) {
@@ -290,12 +354,16 @@ static bool can_cut(const vxm_voxelize_options *options) {
          options->cavities != VXM_CAVITIES_KEEP;
 }
 
+/** Whether components that are wound the other way are cavities of those around them. */
+static bool has_cavities(const vxm_voxelize_options *options) {
+  return options->cavities == VXM_CAVITIES_AUTO && options->split_mode == VXM_SPLIT_MODE_AUTO;
+}
+
 static vxm_status cut_labels(builder *b, const vxm_voxelize_options *options) {
   vxm_status status = find_bodies(b);
   if (status == VXM_OK)
     status = find_open(b);
-  if (status == VXM_OK && options->cavities == VXM_CAVITIES_AUTO &&
-      options->split_mode == VXM_SPLIT_MODE_AUTO) {
+  if (status == VXM_OK && has_cavities(options)) {
     status = measure_bodies(b);
     if (status == VXM_OK)
       status = pool_all_cavities(b);
@@ -311,6 +379,8 @@ vxm_status vxm_label_components_create(vxm_label_components *out, const vxm_face
   *out = (vxm_label_components){.context = soup->context, .soup = soup};
   bool cuts = !labelling->is_by_part && can_cut(options);
   vxm_status status = cuts ? cut_labels(&b, options) : take_labels(&b);
+  if (status == VXM_OK && labelling->is_by_part && out->count > 1 && has_cavities(options))
+    status = empty_cavities(&b);
   for (size_t p = 0; p < out->count && status == VXM_OK; p++)
     find_box(out, &out->pieces[p], lattice, fast);
   vxm_free(soup->context, b.bodies);

@@ -5,7 +5,8 @@
  *
  * What the solid of a label is must not depend on how it is cut. A closed component that has a label for
  * itself is voxelized alone in any case (voxel/parts/parts.h), unless it or another of the label may be a
- * cavity. All else of a label is one piece.
+ * cavity. All else of a label is one piece. With parts for labels each is a piece, and those that are
+ * cavities of others are empty.
  */
 #ifndef VXM_VOXEL_LABELS_LABEL_COMPONENTS_H
 #define VXM_VOXEL_LABELS_LABEL_COMPONENTS_H
