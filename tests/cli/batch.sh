@@ -150,6 +150,13 @@ run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --forma
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'
 run 'voxmend batch data/a -o fixed --no-grid --repair "--format off" --pictures 0 && find fixed -name "*.off" | sort'
 run 'voxmend batch data/a --dry-run 2 -r 8'
+# An open mesh is told of by its variants as by its grid.
+mkdir holed
+awk 'NR == 2 { $2 /= 2; n = $1 } NR <= 2 + n || (NR - n) % 2' in/cavity.off >holed/holed.off
+cp in/cube.off holed/cube.off
+told() { grep result; grep -o '"warnings":\["[^;]*' "$1"/.batch/journal-0-of-1.jsonl; }
+run 'voxmend batch holed -o holed-grids -r 16 --pictures 0 | told holed-grids'
+run 'voxmend batch holed -o holed-variants --no-grid --augment "-n 2 -r 16 --rotate z" --pictures 0 | told holed-variants'
 # Folders as in ModelNet tell class and split, also in a list made from above.
 mkdir -p net/chair/train net/chair/test
 cp in/cube.off net/chair/train/chair_1.off
