@@ -64,7 +64,7 @@ static char *picture_of(const batch_item *item, const char *output, const batch_
   char *name = is_drawn ? hooks->viewed(item, hooks->payload) : NULL, *path = NULL, *text = NULL;
   char *picture = batch_plan_path(output, "picture.png");
   if (name && picture && asprintf(&path, "%s/%s", output, name) >= 0 &&
-      hooks->draw(path, picture, hooks->payload))
+      hooks->draw(item, path, picture, hooks->payload))
     text = base64_of(picture);
   if (picture)
     unlink(picture);

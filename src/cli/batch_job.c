@@ -118,10 +118,35 @@ static bool add_model(batch_words *words, int first, const batch_item *item, bat
   return batch_words_add(words, "--model=%" PRId64, model) || batch_fail(error, "out of memory: free some");
 }
 
+/** The axis that is up in a picture: what the options of pictures say, or else what is usual in the mesh's
+ * format, since a grid does not tell. */
+static char up_of(const batch_request *given, const batch_item *item) {
+  static const char option[] = "--u"; /* names may be shortened */
+  batch_words words = {0};
+  batch_error error;
+  char up = cli_usual_up(item->member ? item->member : item->path);
+  if (given->products[BATCH_PICTURE] && batch_words_split(&words, given->products[BATCH_PICTURE], &error))
+    for (int w = 0; w < words.count; w++)
+      if (strncmp(words.words[w], option, strlen(option)) == 0) {
+        const char *value = strchr(words.words[w], '=');
+        value = value ? value + 1 : w + 1 < words.count ? words.words[w + 1] : "";
+        up = *value ? *value : up;
+      }
+  batch_words_free(&words);
+  return up;
+}
+
+bool batch_add_up(batch_words *words, const batch_request *given, const batch_item *item) {
+  char up = up_of(given, item);
+  return up == 'z' || batch_words_add(words, "--up=%c", up);
+}
+
 /** The options of a product, and those of the item behind them. */
 static bool add_options(batch_words *words, const batch_request *given, batch_product product,
                         const batch_item *item, batch_error *error) {
   int before = words->count;
+  if (product == BATCH_PICTURE && !batch_add_up(words, given, item))
+    return batch_fail(error, "out of memory: free some");
   if (product != BATCH_GRID)
     return batch_words_split(words, given->products[product], error) &&
            (product != BATCH_VARIANTS || add_model(words, before, item, error));

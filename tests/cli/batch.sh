@@ -157,6 +157,17 @@ cp in/cube.off holed/cube.off
 told() { grep result; grep -o '"warnings":\["[^;]*' "$1"/.batch/journal-0-of-1.jsonl; }
 run 'voxmend batch holed -o holed-grids -r 16 --pictures 0 | told holed-grids'
 run 'voxmend batch holed -o holed-variants --no-grid --augment "-n 2 -r 16 --rotate z" --pictures 0 | told holed-variants'
+# Up in pictures, of the grid and in the page, is what is usual in the mesh's format, or what --view says.
+mkdir up
+printf 'v 0 0 0\nv 1 0 0\nv 0 3 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >up/tall.obj
+voxmend view up/tall.obj -o usual.png -r 16 --size 60x45 -q
+voxmend view up/tall.obj -o other.png -r 16 --size 60x45 --up x -q
+voxmend voxelize up/tall.obj -o tall.binvox -r 16 -q
+for up in x y; do voxmend view tall.binvox -o page-$up.png --size 192x144 --up $up -q; done
+drawn() { grep -o '"picture":"[^"]*"' "$1/index.html" | cut -d '"' -f 4 | base64 -d; }
+run 'voxmend batch up -o upright -r 16 --view "--size 60x45" -q && cmp usual.png upright/tall.png && drawn upright | cmp - page-y.png'
+run 'voxmend batch up -o sideways -r 16 --view "--size 60x45 --up x" -q && cmp other.png sideways/tall.png && drawn sideways | cmp - page-x.png'
+run 'voxmend batch up -o no-grids --no-grid --repair "--level clean" -q && voxmend view up/tall.obj -o mesh.png --size 192x144 -q && drawn no-grids | cmp - mesh.png'
 # Folders as in ModelNet tell class and split, also in a list made from above.
 mkdir -p net/chair/train net/chair/test
 cp in/cube.off net/chair/train/chair_1.off
