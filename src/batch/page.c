@@ -93,7 +93,7 @@ static json_t *row_of(const batch_state *state, int64_t i, const batch_summary_h
   set_text(row, "split", item->split);
   set_text(row, "message", end->message);
   if (!batch_is_done(item->status) && item->status != BATCH_PENDING) {
-    char *command = hooks->command_line(item, hooks->payload);
+    char *command = hooks->command_line(item, end->stage, hooks->payload);
     set_text(row, "command", command);
     free(command);
   }

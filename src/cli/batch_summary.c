@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static char *command_line(const batch_item *item, void *payload) {
-  return batch_command_line(item, payload);
+static char *command_line(const batch_item *item, const char *stage, void *payload) {
+  return batch_command_line(item, stage, payload);
 }
 
 /** The grid, or else the repaired mesh. */

@@ -208,6 +208,12 @@ printf 'OFF\n3 x\n' >"odd/$(printf 'a\tb%%d\\n'"'"'.off')"
 printf 'OFF\n4 x\n' >"odd/$(printf 'c\nd e.off')"
 run 'voxmend batch odd -o odd-out -r 8 --pictures 0 -q; cut -f 2-5 odd-out/failures.tsv'
 run 'cut -f 5 odd-out/failures.tsv | sed 1d >commands; while read -r line; do eval "$line" || true; done <commands'
+# It is the command that failed, or all where that is not known.
+mkdir strict && cp in/edge_cubes.off strict
+run 'voxmend batch strict -o strict-out -r 8 --repair "--level closed --max-change 1e-12" --view "--size 40x30" -q; cut -f 3,5 strict-out/failures.tsv; eval "$(sed 1d strict-out/failures.tsv | cut -f 5)" 2>/dev/null'
+run 'find strict-out -type f -not -path "*/.batch/*" | sort'
+printf 'OFF\n3 x\n' >strict/edge_cubes.off
+run 'voxmend batch strict -o stricter -r 8 --repair "--level closed" --view "--size 40x30" -q; cut -f 3,5 stricter/failures.tsv'
 # Options that keep a command from writing are no success.
 run 'voxmend batch clash/a.off -o helped -r 4 --view --help --pictures 0; cut -f 1-4 helped/failures.tsv'
 mkdir latin
