@@ -31,10 +31,10 @@ static void warn_of_model(cli_run *cli, const augment_request *given, const vxm_
 static int make_variants(cli_run *cli, augment_outcome *out, const augment_request *given,
                          vxm_sampler *sampler, augment_stream *stream) {
   double start = cli_clock();
+  warn_of_model(cli, given, out->input.mesh);
   if (vxm_mesh_census(&out->census, out->input.mesh, &cli->error) != VXM_OK ||
       vxm_sampler_put(sampler, given->variant.model, out->input.mesh, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  warn_of_model(cli, given, out->input.mesh);
   double prepared = cli_clock();
   out->prepare_ms = prepared - start;
   int status = stream ? augment_stream_write(cli, stream, given, &out->made)
