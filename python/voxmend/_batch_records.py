@@ -9,7 +9,7 @@ from array import array
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ._errors import ArgumentError, FormatError
-from ._placement import place, split_as
+from ._placement import class_names, place, split_as
 
 GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb", ".octree", ".bt", ".nii", ".nii.gz", ".vti", ".vtk", ".tif", ".h5",
          ".vox", ".schem", ".litematic", ".zarr")
@@ -154,7 +154,7 @@ class Records:
 
     def classes(self) -> List[str]:
         """Sorted names of all classes of the plan, whatever became of their meshes: their numbers depend on nothing else."""
-        return sorted({_place(self._line(-1, at))[0] for at in self._plan})
+        return class_names(_place(self._line(-1, at))[0] for at in self._plan)
 
     def __len__(self) -> int:
         return len(self._plan)

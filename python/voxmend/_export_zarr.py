@@ -12,7 +12,7 @@ from . import _values
 from ._batch_records import Records
 from ._errors import ArgumentError, EmptyError, UnavailableError
 from ._export_common import describe, json_line, packed_grid, published, with_grids
-from ._placement import split_as
+from ._placement import class_numbers, split_as
 from ._types import Array
 
 CHUNK_BYTES = 4 << 20
@@ -65,7 +65,7 @@ def _fill(records: Records, numbers: List[int], group: Any, classes: List[str], 
             item = records[number]
             chunk[i], told = packed_grid(records, item)
             origins[begin + i], sizes[begin + i] = told["origin"], told["voxel_size"]
-            labels[begin + i] = classes.index(item.kind)
+            labels[begin + i] = class_numbers([item.kind], classes)[0]
         grids[begin:begin + len(some)] = chunk
     others: List[Tuple[str, Array]] = [("origin", origins), ("voxel_size", sizes), ("label", labels)]
     for name, values in others:

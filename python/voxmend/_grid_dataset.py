@@ -15,7 +15,7 @@ from ._errors import EmptyError
 from ._grid_sources import open_source
 from ._left_out import check_on_error, left_out
 from ._packed import unpack as unpack_rows
-from ._placement import split_as
+from ._placement import class_numbers, split_as
 from ._types import Array
 
 
@@ -36,7 +36,7 @@ class GridDataset(Dataset):
         classes: sorted names of all that the batch's plan has, in whatever split and whatever became of their meshes, so that
             labels are the same everywhere.
         names: of the meshes, as in the plan; of variants as often as there are some.
-        labels: (n,) int64, numbers of the classes.
+        labels: (n,) int64, numbers of the classes; -1 for a mesh without one, such as a file beside the folders of classes.
         shape: (nx, ny, nz)
         groups: (n,) numbers of the tars, or of the chunks, in which the grids are: what is best read together.
     """
@@ -53,8 +53,7 @@ class GridDataset(Dataset):
                              (self.root, split, sorted(set(self._source.splits))))
         chosen = [i for i, name in enumerate(self._source.splits) if split is None or name == split]
         self._numbers = numpy.array(chosen, numpy.int64)
-        numbers = {name: label for label, name in enumerate(self.classes)}
-        self.labels = numpy.array([numbers[self._source.kinds[i]] for i in chosen], numpy.int64)
+        self.labels = numpy.array(class_numbers((self._source.kinds[i] for i in chosen), self.classes), numpy.int64)
         self.groups = self._source.groups[self._numbers]
         self._forget()
 

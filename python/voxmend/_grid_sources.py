@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the grids of a batch stand: its folder, or what was exported of it. Each gives bits, as `_packed` has them.
 
-A source has `shape`, of each grid; `names`, `kinds` and `splits`, of each; `classes`, all kinds of the batch's plan; `groups`,
+A source has `shape`, of each grid; `names`, `kinds` and `splits`, of each; `classes`, names of all kinds of the batch's plan; `groups`,
 numbers of what is read together; and `packed(i)`. It may be pickled, and used after a fork.
 """
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ._export_common import describe, need_voxels, packed_grid, with_grids
 from ._field import VALUE_KINDS, VoxelField
 from ._grid import read
 from ._packed import pack
-from ._placement import split_as
+from ._placement import class_names, split_as
 from ._types import Array
 
 
@@ -57,9 +57,9 @@ class Source:
             raise EmptyError("%s: there is no grid in it" % where)
         self.where, self.shape, self.groups = where, told.shape, groups
         self.names, self.kinds, self.splits = told.names, told.kinds, told.splits
-        if classes is not None and not (isinstance(classes, list) and set(self.kinds) <= set(classes)):
+        if classes is not None and not (isinstance(classes, list) and set(class_names(self.kinds)) <= set(classes)):
             raise FormatError("%s: its classes are not those of its grids" % where)
-        self.classes: List[str] = sorted(set(self.kinds)) if classes is None else classes  # None: an older export
+        self.classes: List[str] = class_names(self.kinds) if classes is None else classes  # None: an older export
 
     def __len__(self) -> int:
         return len(self.names)

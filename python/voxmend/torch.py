@@ -29,7 +29,7 @@ from ._grid_dataset import GridDataset, order_by_groups
 from ._left_out import check_on_error, left_out
 from ._mesh import Mesh
 from ._mesh_sources import load
-from ._placement import place, split_named
+from ._placement import class_names, place, split_named
 from ._repair import repair
 from ._sampler import Sampler
 from ._types import Array
@@ -74,7 +74,8 @@ class VoxelDataset(Dataset):
     process, and another one in each epoch.
 
     Args:
-        root: folder of the class folders; the sorted names of those with a mesh in them, in whatever split, are the classes.
+        root: folder of the class folders; the sorted names of those with a mesh in them, in whatever split, are the classes;
+            files beside these folders are left out.
         split: "train", "test", "val", or another word for one of them (doc/datasets.md), in which the folders may be called
             otherwise; or any folder within those of the classes; None = all files of a class.
         resolution: D, voxels along each axis.
@@ -97,7 +98,7 @@ class VoxelDataset(Dataset):
         for name, value, least in (("resolution", resolution, 1), ("variants", variants, 0), ("memory", memory, 0)):
             _values.whole("dataset: " + name, value, least)
         found = [(place(name), name, path) for name, path in _meshes_below(self.root)]
-        self.classes = sorted({kind for (kind, _), _, _ in found if kind})
+        self.classes = class_names(kind for (kind, _), _, _ in found)
         numbers = {name: label for label, name in enumerate(self.classes)}
         chosen = sorted((numbers[where[0]], path) for where, name, path in found if where[0] and _is_of(split, where, name))
         self.files: List[str] = [path for _, path in chosen]

@@ -64,7 +64,7 @@ static char *picture_of(const batch_item *item, const char *output, const batch_
   char *name = is_drawn ? hooks->viewed(item, hooks->payload) : NULL, *path = NULL, *text = NULL;
   char *picture = batch_plan_path(output, "picture.png");
   if (name && picture && asprintf(&path, "%s/%s", output, name) >= 0 &&
-      hooks->draw(path, picture, hooks->payload))
+      hooks->draw(item, path, picture, hooks->payload))
     text = base64_of(picture);
   if (picture)
     unlink(picture);
@@ -93,7 +93,7 @@ static json_t *row_of(const batch_state *state, int64_t i, const batch_summary_h
   set_text(row, "split", item->split);
   set_text(row, "message", end->message);
   if (!batch_is_done(item->status) && item->status != BATCH_PENDING) {
-    char *command = hooks->command_line(item, hooks->payload);
+    char *command = hooks->command_line(item, end->stage, hooks->payload);
     set_text(row, "command", command);
     free(command);
   }

@@ -42,7 +42,7 @@ static void put_cell(FILE *file, const char *text, char end) {
 static void put_failure(FILE *file, const batch_state *state, int64_t i, const batch_summary_hooks *hooks) {
   const batch_item *item = &state->manifest.items[i];
   const batch_end *end = &state->ends[i];
-  char *command = hooks->command_line(item, hooks->payload);
+  char *command = hooks->command_line(item, end->stage, hooks->payload);
   put_cell(file, item->id, '\t');
   put_cell(file, batch_status_names[item->status], '\t');
   put_cell(file, end->stage, '\t');

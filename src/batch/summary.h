@@ -8,12 +8,12 @@
 /** What the summary needs of its caller, who knows the commands. */
 typedef struct batch_summary_hooks {
   int pictures; /**< how many at most */
-  /** The command that repeats an item alone, to be freed. */
-  char *(*command_line)(const batch_item *item, void *payload);
+  /** The command that repeats what failed at a stage of an item, to be freed. */
+  char *(*command_line)(const batch_item *item, const char *stage, void *payload);
   /** The name of the output that can be looked at, below the folder, to be freed; NULL = none. */
   char *(*viewed)(const batch_item *item, void *payload);
-  /** Draws a file as a small PNG; false if that cannot be. */
-  bool (*draw)(const char *path, const char *picture, void *payload);
+  /** Draws a file that was made of an item as a small PNG; false if that cannot be. */
+  bool (*draw)(const batch_item *item, const char *path, const char *picture, void *payload);
   void *payload;
 } batch_summary_hooks;
 

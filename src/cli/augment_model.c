@@ -14,9 +14,24 @@ int augment_open_sampler(cli_run *cli, vxm_sampler **out, augment_request *given
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
+/** What the grid of the mesh as it stands would be told of: that it is open, so that the winding number
+ * decides, that parts are lost and the like. Variants are too many to be told of each. */
+static void warn_of_model(cli_run *cli, const augment_request *given, const vxm_mesh *mesh) {
+  vxm_grid *grid = NULL;
+  vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
+  vxm_voxelize_options options = given->voxelize;
+  vxm_error ignored = VXM_ERROR_INIT; /* the variants are made all the same, or say why not */
+  space.resolution[0] = given->sampler.resolution;
+  options.engine = NULL; /* what there is to say of it is said once */
+  if (vxm_voxelize(&grid, NULL, mesh, &space, &options, &ignored) == VXM_OK)
+    cli_warn_grid(cli, given->input, grid);
+  vxm_grid_destroy(grid);
+}
+
 static int make_variants(cli_run *cli, augment_outcome *out, const augment_request *given,
                          vxm_sampler *sampler, augment_stream *stream) {
   double start = cli_clock();
+  warn_of_model(cli, given, out->input.mesh);
   if (vxm_mesh_census(&out->census, out->input.mesh, &cli->error) != VXM_OK ||
       vxm_sampler_put(sampler, given->variant.model, out->input.mesh, &cli->error) != VXM_OK)
     return cli_fail(cli);

@@ -62,13 +62,21 @@ typedef struct batch_maker {
 
 json_t *batch_make_job(const batch_item *item, uint64_t memory, void *maker, batch_error *error);
 int batch_do_job(const char *request, int result, void *maker);
+/** Adds the option that says which axis is up in a picture of what was made of a mesh; false without memory.
+ */
+bool batch_add_up(batch_words *words, const batch_request *given, const batch_item *item);
 /** What decides about the bytes of outputs, for the plan. */
 json_t *batch_make_settings(const batch_request *given);
 /** Whether something is made of the colours of a mesh with these options of its own, which may be NULL. */
 bool batch_reads_colors(const batch_request *given, const char *options);
-/** "voxmend voxelize a.off -o a.binvox ...": repeats a mesh alone, writing to the present folder; to be
- * freed. */
-char *batch_command_line(const batch_item *item, const batch_maker *maker);
+/**
+ * "voxmend voxelize a.off -o a.binvox ...": repeats what failed of a mesh alone, writing to the present
+ * folder; to be freed.
+ *
+ * @param stage the command that failed; another word, or NULL = all that are run for a mesh, one after
+ * another
+ */
+char *batch_command_line(const batch_item *item, const char *stage, const batch_maker *maker);
 
 /* ---- batch_companions.c ---- */
 

@@ -62,12 +62,16 @@ static bool can_be_viewed(const char *format) {
   return (vxm_grid_format_traits(format) & VXM_FORMAT_READ) != 0;
 }
 
+/** Whether a picture is drawn of the grid; else of the mesh. */
+static bool draws_grid(const batch_request *given) {
+  return !given->no_grid && can_be_viewed(given->format);
+}
+
 bool batch_reads_colors(const batch_request *given, const char *options) {
   bool reads = options && strstr(options, "--col"); /* names may be shortened */
   for (int w = 0; w < given->grid_options.count; w++)
     reads = reads || strcmp(given->grid_options.words[w], "--color=mesh") == 0;
-  bool draws_mesh = given->products[BATCH_PICTURE] && (given->no_grid || !can_be_viewed(given->format));
-  return reads || draws_mesh;
+  return reads || (given->products[BATCH_PICTURE] && !draws_grid(given));
 }
 
 /** Options of one mesh may say how its grid is made, and not what is written where. Names may be shortened.
@@ -118,10 +122,35 @@ static bool add_model(batch_words *words, int first, const batch_item *item, bat
   return batch_words_add(words, "--model=%" PRId64, model) || batch_fail(error, "out of memory: free some");
 }
 
+/** The axis that is up in a picture: what the options of pictures say, or else what is usual in the mesh's
+ * format, since a grid does not tell. */
+static char up_of(const batch_request *given, const batch_item *item) {
+  static const char option[] = "--u"; /* names may be shortened */
+  batch_words words = {0};
+  batch_error error;
+  char up = cli_usual_up(item->member ? item->member : item->path);
+  if (given->products[BATCH_PICTURE] && batch_words_split(&words, given->products[BATCH_PICTURE], &error))
+    for (int w = 0; w < words.count; w++)
+      if (strncmp(words.words[w], option, strlen(option)) == 0) {
+        const char *value = strchr(words.words[w], '=');
+        value = value ? value + 1 : w + 1 < words.count ? words.words[w + 1] : "";
+        up = *value ? *value : up;
+      }
+  batch_words_free(&words);
+  return up;
+}
+
+bool batch_add_up(batch_words *words, const batch_request *given, const batch_item *item) {
+  char up = up_of(given, item);
+  return up == 'z' || batch_words_add(words, "--up=%c", up);
+}
+
 /** The options of a product, and those of the item behind them. */
 static bool add_options(batch_words *words, const batch_request *given, batch_product product,
                         const batch_item *item, batch_error *error) {
   int before = words->count;
+  if (product == BATCH_PICTURE && !batch_add_up(words, given, item))
+    return batch_fail(error, "out of memory: free some");
   if (product != BATCH_GRID)
     return batch_words_split(words, given->products[product], error) &&
            (product != BATCH_VARIANTS || add_model(words, before, item, error));
@@ -175,7 +204,7 @@ static bool add_product(json_t *job, const batch_maker *maker, batch_product pro
   char *name = product_name(given, product, item), *path = NULL, *grid = NULL, *grid_path = NULL;
   bool good = name && asprintf(&path, "%s/%s", maker->output, name) >= 0;
   const char *input = item->member ? "-" : item->path;
-  if (good && product == BATCH_PICTURE && !given->no_grid && can_be_viewed(given->format)) {
+  if (good && product == BATCH_PICTURE && draws_grid(given)) {
     grid = product_name(given, BATCH_GRID, item);
     good = grid && asprintf(&grid_path, "%s/%s", maker->output, grid) >= 0;
     input = grid_path;
@@ -268,34 +297,73 @@ static const char *unpacker_of(const char *archive) {
   return dot && strcasecmp(dot, ".zip") == 0 ? "unzip -p" : "bsdtar -xOf";
 }
 
-char *batch_command_line(const batch_item *item, const batch_maker *maker) {
-  const batch_request *given = maker->given;
-  batch_product product = is_wanted(given, BATCH_GRID) ? BATCH_GRID : BATCH_REPAIRED;
-  if (item->is_misnamed) /* nothing was run, and what a journal has of the name is another one */
-    return NULL;
-  while (!is_wanted(given, product) && product + 1 < BATCH_PRODUCTS)
-    product++;
-  batch_words words = {0}, source = {0};
-  batch_error error;
-  char *name = product_name(given, product, item), *line = NULL, *first = NULL, *text = NULL;
-  const char *slash = name ? strrchr(name, '/') : NULL;
-  if (name && batch_words_add(&words, "voxmend") &&
-      add_command(&words, given, product, item, item->member ? "-" : item->path, slash ? slash + 1 : name,
-                  &error))
-    text = batch_words_text(words.words, words.count);
-  if (text && item->member && batch_words_add(&source, "%s", item->path) &&
-      batch_words_add(&source, "%s", item->member))
-    first = batch_words_text(source.words, source.count);
-  if (text && first && asprintf(&line, "%s %s | %s", unpacker_of(item->path), first, text) < 0)
-    line = NULL;
-  if (text && !item->member) {
-    line = text;
+/** The last part of a name: where a command of its own writes to. Belongs to the name. */
+static const char *base_of(const char *name) {
+  const char *slash = strrchr(name, '/');
+  return slash ? slash + 1 : name;
+}
+
+/** "unzip -p ARCHIVE MEMBER | ", or "" where the mesh is a file, to be freed. */
+static char *unpacking_of(const batch_item *item) {
+  batch_words source = {0};
+  char *words = NULL, *text = NULL;
+  if (!item->member)
+    return strdup("");
+  if (batch_words_add(&source, "%s", item->path) && batch_words_add(&source, "%s", item->member))
+    words = batch_words_text(source.words, source.count);
+  if (words && asprintf(&text, "%s %s | ", unpacker_of(item->path), words) < 0)
     text = NULL;
-  }
-  batch_words_free(&words);
   batch_words_free(&source);
+  free(words);
+  return text;
+}
+
+/** The command that makes a product alone, to be freed; NULL where there is none. */
+static char *product_line(const batch_item *item, const batch_request *given, batch_product product) {
+  bool is_of_grid = product == BATCH_PICTURE && draws_grid(given);
+  batch_words words = {0};
+  batch_error error;
+  char *name = product_name(given, product, item), *grid = product_name(given, BATCH_GRID, item);
+  char *unpacking = is_of_grid ? strdup("") : unpacking_of(item), *text = NULL, *line = NULL;
+  const char *input = is_of_grid && grid ? base_of(grid) : item->member ? "-" : item->path;
+  if (name && grid && batch_words_add(&words, "voxmend") &&
+      add_command(&words, given, product, item, input, base_of(name), &error))
+    text = batch_words_text(words.words, words.count);
+  if (text && unpacking && asprintf(&line, "%s%s", unpacking, text) < 0)
+    line = NULL;
+  batch_words_free(&words);
   free(text);
-  free(first);
+  free(unpacking);
+  free(grid);
   free(name);
   return line;
+}
+
+/** Whether a product plays a part in what failed at a stage: a picture is drawn of the grid. */
+static bool is_of_stage(const batch_request *given, batch_product product, const char *stage) {
+  bool is_command = false;
+  for (int p = 0; p < BATCH_PRODUCTS; p++)
+    is_command = is_command || (stage && strcmp(stage, product_commands[p]) == 0);
+  return !is_command || strcmp(stage, product_commands[product]) == 0 ||
+         (product == BATCH_GRID && draws_grid(given) && strcmp(stage, product_commands[BATCH_PICTURE]) == 0);
+}
+
+char *batch_command_line(const batch_item *item, const char *stage, const batch_maker *maker) {
+  const batch_request *given = maker->given;
+  char *all = NULL;
+  if (item->is_misnamed) /* nothing was run, and what a journal has of the name is another one */
+    return NULL;
+  for (int p = 0; p < BATCH_PRODUCTS; p++) {
+    batch_product product = (batch_product)p;
+    bool is_meant = is_wanted(given, product) && is_of_stage(given, product, stage);
+    char *line = is_meant ? product_line(item, given, product) : NULL, *joined = NULL;
+    if (!line)
+      continue;
+    if (asprintf(&joined, "%s%s%s", all ? all : "", all ? " && " : "", line) < 0)
+      joined = NULL;
+    free(line);
+    free(all);
+    all = joined;
+  }
+  return all;
 }

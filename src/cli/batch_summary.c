@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static char *command_line(const batch_item *item, void *payload) {
-  return batch_command_line(item, payload);
+static char *command_line(const batch_item *item, const char *stage, void *payload) {
+  return batch_command_line(item, stage, payload);
 }
 
 /** The grid, or else the repaired mesh. */
@@ -28,20 +28,19 @@ static char *viewed(const batch_item *item, void *payload) {
   return name;
 }
 
-static bool draw(const char *path, const char *picture, void *payload) {
-  (void)payload;
+static bool draw(const batch_item *item, const char *path, const char *picture, void *payload) {
+  static const char *const usual[] = {"--size=192x144", "--quiet", "--progress=never", "--threads=1"};
+  const batch_maker *maker = payload;
+  batch_words words = {0};
   if (batch_signal())
     return false;
-  char *words[] = {"view",
-                   (char *)(uintptr_t)path,
-                   "-o",
-                   (char *)(uintptr_t)picture,
-                   "--size=192x144",
-                   "--quiet",
-                   "--progress=never",
-                   "--threads=1",
-                   NULL};
-  return batch_run_command(words, -1, 20) == CLI_DONE;
+  bool good = batch_words_add(&words, "view") && batch_words_add(&words, "-o") &&
+              batch_words_add(&words, "%s", picture) && batch_add_up(&words, maker->given, item);
+  for (size_t u = 0; u < sizeof usual / sizeof *usual; u++)
+    good = good && batch_words_add(&words, "%s", usual[u]);
+  good = good && batch_words_add(&words, "%s", path) && batch_run_command(words.words, -1, 20) == CLI_DONE;
+  batch_words_free(&words);
+  return good;
 }
 
 /** Whether what is there, written last of all, tells the same already. */

@@ -186,6 +186,9 @@ cli_formats cli_formats_without(cli_formats formats, const char *name);
 bool cli_has_json(const char *format, bool may_be_labels);
 /** Whether a file name ends in '.' and this extension, in any case. */
 bool cli_is_extension(const char *path, const char *extension);
+/** 'y' or 'z': the axis that points up in most files of a mesh's format, by its name. COLLADA says which, and
+ * is turned to y where it is read. */
+char cli_usual_up(const char *mesh);
 
 /* ---- entry.c ---- */
 

@@ -179,16 +179,16 @@ static bool is_named(const char *path, const char *const *formats) {
   return false;
 }
 
-/** The axis that points up in most files of a mesh's format. COLLADA says which, and is turned to y where it
- * is read.
- */
-static void guess_up(request *given) {
+char cli_usual_up(const char *mesh) {
   static const char *const y_formats[] = {"obj", "gltf", "glb", "dae", "zae", "x3d", "fbx", NULL};
+  return is_named(mesh, y_formats) ? 'y' : 'z';
+}
+
+static void guess_up(request *given) {
   const char *dot = strrchr(given->input, '.'), *slash = strrchr(given->input, '/');
   if (given->picture.up != 0 || !dot || (slash && dot < slash))
     return;
-  bool is_y = is_named(given->input, y_formats);
-  given->picture.up = is_y ? 2 : 3;
+  given->picture.up = cli_usual_up(given->input) - 'x' + 1;
   given->up_hint = dot;
 }
 

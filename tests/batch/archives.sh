@@ -126,6 +126,14 @@ if "$VOXMEND" info -q scenes/stool.glb 2>/dev/null; then
   batch scenes.tar -o scenes-archive >said
   cmp scenes-folder/stool.binvox scenes-archive/stool.binvox || fail "stool.glb"
 fi
+# Pictures of a member have that axis up that is usual in its format.
+mkdir up
+printf 'v 0 0 0\nv 1 0 0\nv 0 3 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >up/tall.obj
+if "$VOXMEND" view up/tall.obj -o usual.png -r 16 --size 60x45 -q 2>/dev/null; then
+  tar cf up.tar up
+  batch up.tar -o up-grids --view "--size 60x45" >/dev/null
+  cmp usual.png up-grids/up/tall.png || fail "up in pictures"
+fi
 # A mesh is read without the files beside it, and told so, whatever the option; but what is not wanted is not missed.
 mkdir red
 printf 'mtllib m.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >red/m.obj

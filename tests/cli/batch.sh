@@ -150,6 +150,24 @@ run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --forma
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'
 run 'voxmend batch data/a -o fixed --no-grid --repair "--format off" --pictures 0 && find fixed -name "*.off" | sort'
 run 'voxmend batch data/a --dry-run 2 -r 8'
+# An open mesh is told of by its variants as by its grid.
+mkdir holed
+awk 'NR == 2 { $2 /= 2; n = $1 } NR <= 2 + n || (NR - n) % 2' in/cavity.off >holed/holed.off
+cp in/cube.off holed/cube.off
+told() { grep result; grep -o '"warnings":\["[^;]*' "$1"/.batch/journal-0-of-1.jsonl; }
+run 'voxmend batch holed -o holed-grids -r 16 --pictures 0 | told holed-grids'
+run 'voxmend batch holed -o holed-variants --no-grid --augment "-n 2 -r 16 --rotate z" --pictures 0 | told holed-variants'
+# Up in pictures, of the grid and in the page, is what is usual in the mesh's format, or what --view says.
+mkdir up
+printf 'v 0 0 0\nv 1 0 0\nv 0 3 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >up/tall.obj
+voxmend view up/tall.obj -o usual.png -r 16 --size 60x45 -q
+voxmend view up/tall.obj -o other.png -r 16 --size 60x45 --up x -q
+voxmend voxelize up/tall.obj -o tall.binvox -r 16 -q
+for up in x y; do voxmend view tall.binvox -o page-$up.png --size 192x144 --up $up -q; done
+drawn() { grep -o '"picture":"[^"]*"' "$1/index.html" | cut -d '"' -f 4 | base64 -d; }
+run 'voxmend batch up -o upright -r 16 --view "--size 60x45" -q && cmp usual.png upright/tall.png && drawn upright | cmp - page-y.png'
+run 'voxmend batch up -o sideways -r 16 --view "--size 60x45 --up x" -q && cmp other.png sideways/tall.png && drawn sideways | cmp - page-x.png'
+run 'voxmend batch up -o no-grids --no-grid --repair "--level clean" -q && voxmend view up/tall.obj -o mesh.png --size 192x144 -q && drawn no-grids | cmp - mesh.png'
 # Folders as in ModelNet tell class and split, also in a list made from above.
 mkdir -p net/chair/train net/chair/test
 cp in/cube.off net/chair/train/chair_1.off
@@ -190,6 +208,12 @@ printf 'OFF\n3 x\n' >"odd/$(printf 'a\tb%%d\\n'"'"'.off')"
 printf 'OFF\n4 x\n' >"odd/$(printf 'c\nd e.off')"
 run 'voxmend batch odd -o odd-out -r 8 --pictures 0 -q; cut -f 2-5 odd-out/failures.tsv'
 run 'cut -f 5 odd-out/failures.tsv | sed 1d >commands; while read -r line; do eval "$line" || true; done <commands'
+# It is the command that failed, or all where that is not known.
+mkdir strict && cp in/edge_cubes.off strict
+run 'voxmend batch strict -o strict-out -r 8 --repair "--level closed --max-change 1e-12" --view "--size 40x30" -q; cut -f 3,5 strict-out/failures.tsv; eval "$(sed 1d strict-out/failures.tsv | cut -f 5)" 2>/dev/null'
+run 'find strict-out -type f -not -path "*/.batch/*" | sort'
+printf 'OFF\n3 x\n' >strict/edge_cubes.off
+run 'voxmend batch strict -o stricter -r 8 --repair "--level closed" --view "--size 40x30" -q; cut -f 3,5 stricter/failures.tsv'
 # Options that keep a command from writing are no success.
 run 'voxmend batch clash/a.off -o helped -r 4 --view --help --pictures 0; cut -f 1-4 helped/failures.tsv'
 mkdir latin

@@ -47,6 +47,15 @@ run 'voxmend info absolute.obj 2>&1 | grep warning'
 run 'voxmend voxelize cube.obj -o c.npy -q -r 8 --color mesh --external none'
 run 'voxmend voxelize - -o c.npy -q -r 8 --color mesh <cube.obj'
 
+say "# as in ShapeNet: the pictures stand beside the folder of the mesh"
+mkdir -p net/models net/images
+cp cube.obj net/models/
+cp maps/* net/images/
+sed 's,maps/,../images/,' cube.mtl >net/models/cube.mtl
+run 'paint net/models/cube.obj'
+run 'voxmend voxelize net/models/cube.obj -o d.npy -r 8 --color mesh 2>&1 | grep -o "was not opened: .*"'
+run 'paint cube.obj >inside.txt && paint net/models/cube.obj "--external any" | diff inside.txt -'
+
 say "# without --color mesh nothing of it is looked at"
 run 'voxmend voxelize absolute.obj -o c.npy -q -r 8'
 

@@ -40,7 +40,8 @@ cp rocket.off ModelNet40/table/test/table_0003.off # again
 cp rocket.off ModelNet40/table/test/table_0004.off
 for model in 02691156/1a04e3 03001627/1a6f61; do
   mkdir -p ShapeNetCore.v2/$model/models
-  cp plane.obj ShapeNetCore.v2/$model/models/model_normalized.obj
+  { printf 'mtllib model_normalized.mtl\nusemtl paint\n'; cat plane.obj; } >ShapeNetCore.v2/$model/models/model_normalized.obj
+  printf 'newmtl paint\nKd 1 0 0\n' >ShapeNetCore.v2/$model/models/model_normalized.mtl
 done
 
 ln -s "$VOXMEND" "$work/bin/voxmend"

@@ -295,6 +295,48 @@ static void test_way_up(void **state) {
   remove_folder(folder);
 }
 
+/** How red a point of a plate is in the picture, in front of the post that may stand in its middle. */
+static int plate_brightness(vxm_context *context, int axis, int64_t thickness, bool has_post,
+                            const char *path) {
+  vxm_grid *grid = new_grid(context, unit_space(96, 96, 96));
+  int64_t low[3] = {0, 0, 0}, high[3] = {96, 96, 96};
+  high[axis] = thickness;
+  fill_box(grid, low, high);
+  for (int a = 0; a < 3; a++) {
+    low[a] = a == axis ? 0 : 47;
+    high[a] = a == axis ? 30 : 49;
+  }
+  if (has_post)
+    fill_box(grid, low, high);
+  vxm_picture_options options = small();
+  options.up = axis + 1;
+  options.elevation = 40;
+  image i = draw(grid, path, &options);
+  extent e = find_voxels(&i);
+  int x = (e.x0 + e.x1) / 2, y = e.y0 + (e.y1 - e.y0) * 8 / 10, red = i.rgb[3 * (y * i.width + x)];
+  free(i.rgb);
+  vxm_grid_destroy(grid);
+  return red;
+}
+
+/** A plate of one voxel, small in the picture, has as much behind it as in front: it is lit as a thick one.
+ */
+static void test_thin_plates(void **state) {
+  (void)state;
+  char folder[64];
+  make_folder(folder);
+  vxm_context *context = context_of(2);
+  for (int axis = 0; axis < 3; axis++)
+    for (int post = 0; post < 2; post++) {
+      int thick = plate_brightness(context, axis, 10, post, path_in(folder, "p.png"));
+      for (int64_t thickness = 1; thickness < 4; thickness++)
+        assert_in_range(plate_brightness(context, axis, thickness, post, path_in(folder, "p.png")),
+                        thick - 12, thick + 12);
+    }
+  vxm_context_destroy(context);
+  remove_folder(folder);
+}
+
 static void test_same_for_all_threads(void **state) {
   (void)state;
   char folder[64];
@@ -382,14 +424,11 @@ static void test_unavailable(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rays),
-      cmocka_unit_test(test_rays_along_axes),
-      cmocka_unit_test(test_pyramid),
-      cmocka_unit_test(test_tiles),
+      cmocka_unit_test(test_rays),        cmocka_unit_test(test_rays_along_axes),
+      cmocka_unit_test(test_pyramid),     cmocka_unit_test(test_tiles),
 #ifdef HAVE_PNG
-      cmocka_unit_test(test_framing),
-      cmocka_unit_test(test_way_up),
-      cmocka_unit_test(test_same_for_all_threads),
+      cmocka_unit_test(test_framing),     cmocka_unit_test(test_way_up),
+      cmocka_unit_test(test_thin_plates), cmocka_unit_test(test_same_for_all_threads),
       cmocka_unit_test(test_options),
 #else
       cmocka_unit_test(test_unavailable),

@@ -101,6 +101,40 @@ class Grids(unittest.TestCase):
             for root in roots[1:]:
                 remove(root)
 
+    def test_without_a_class(self):
+        """A mesh beside the folders of classes has none, -1, and moves no numbers; so have all where no folder is a class."""
+        meshes, out, tars, packed = (os.path.join(self.folder.name, name)
+                                     for name in ("stray", "strays", "stray-tars", "stray.zarr"))
+        for number, name in enumerate(("template.off", "train/beside.off", "bed/train/x.off", "chair/train/y.off")):
+            os.makedirs(os.path.dirname(os.path.join(meshes, name)), exist_ok=True)
+            with open(os.path.join(SAMPLES, "cube.off")) as source, open(os.path.join(meshes, name), "w") as file:
+                file.write(source.read() + "# %d\n" % number)
+        wanted = {"template.off": -1, "train/beside.off": -1, "bed/train/x.off": 0, "chair/train/y.off": 1}
+        for classes in ["bed", "chair"], []:
+            voxmend.batch.run(meshes, out, options="-r 8")
+            voxmend.batch.export(out, tars, to="webdataset")
+            with open(os.path.join(tars, "classes.json")) as file:
+                self.assertEqual(json.load(file), classes)
+            roots = [out, tars]
+            if zarr is not None:
+                voxmend.batch.export(out, packed, to="zarr")
+                roots.append(packed)
+                group = zarr.open_group(packed, mode="r")
+                with open(os.path.join(packed, "items.jsonl")) as file:
+                    items = [json.loads(line)["item"] for line in file]
+                self.assertEqual((group.attrs["classes"], dict(zip(items, group["label"][...].tolist()))), (classes, wanted))
+            for root in roots:
+                data = GridDataset(root)
+                self.assertEqual((data.classes, dict(zip(data.names, data.labels.tolist()))), (classes, wanted))
+                self.assertEqual([data[i][1] for i in range(len(data))], data.labels.tolist())
+            if classes:
+                models = VoxelDataset(meshes, None, 8)
+                self.assertEqual((models.classes, [os.path.relpath(file, meshes) for file in models.files], models.labels),
+                                 (classes, ["bed/train/x.off", "chair/train/y.off"], [0, 1]))
+            for root in roots + [os.path.join(meshes, name) for name in classes]:
+                remove(root)
+            wanted = {name: -1 for name in wanted if "/" not in name or name.startswith("train")}
+
     def test_names_of_splits(self):
         """The plan, what is read of it and folders of meshes agree about what is a split, a class, or neither."""
         words = {"train": "train", "TRAIN": "train", "Training": "train", "test": "test", "Test": "test", "testing": "test",

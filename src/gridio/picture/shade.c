@@ -65,8 +65,24 @@ void vxm_scene_weigh(vxm_scene *scene) {
   }
 }
 
+/** A gradient of this length, or more, is that of a surface; on a flat side of a solid it is 31. */
+static const double whole_gradient = 8;
+
+/**
+ * The gradient as seen from a face. What is a voxel thick has as much behind it as in front, so that its
+ * gradient is of what stands near by, or of rounding alone: the weaker it is, the more the face itself
+ * counts, and none turns away from it, since there is nothing before a face that is seen.
+ */
+static vxm_ray_vec3 seen_from(vxm_ray_vec3 face, vxm_ray_vec3 gradient) {
+  double away = vxm_ray_vec3_dot(gradient, face);
+  if (away < 0)
+    gradient = vxm_ray_vec3_add(gradient, -away, face);
+  double lacking = whole_gradient - sqrt(vxm_ray_vec3_dot(gradient, gradient));
+  return lacking > 0 ? vxm_ray_vec3_add(gradient, lacking, face) : gradient;
+}
+
 /** The direction in which the neighbourhood empties: the gradient of a blurred grid, in scene coordinates. */
-static vxm_ray_vec3 smooth_normal(const vxm_scene *scene, const int64_t voxel[3]) {
+static vxm_ray_vec3 smooth_normal(const vxm_scene *scene, const int64_t voxel[3], vxm_ray_vec3 face) {
   vxm_ray_vec3 sum = {{0, 0, 0}};
   for (int dk = -REACH; dk <= REACH; dk++)
     for (int dj = -REACH; dj <= REACH; dj++) {
@@ -75,6 +91,7 @@ static vxm_ray_vec3 smooth_normal(const vxm_scene *scene, const int64_t voxel[3]
       sum = vxm_ray_vec3_add(sum, -weight[dj + REACH] * weight[dk + REACH],
                              vxm_ray_vec3_of(moment, mass * dj, mass * dk));
     }
+  sum = seen_from(face, sum);
   for (int a = 0; a < 3; a++)
     sum.c[a] /= scene->step[a];
   return vxm_ray_vec3_unit(sum);
@@ -165,7 +182,7 @@ static vxm_light shade_voxel(const vxm_scene *scene, const vxm_hit *hit, const d
   vxm_ray_vec3 normal = face;
   double crisp = 1 - scene->smoothness, open = 1;
   if (scene->smoothness > 0) {
-    vxm_ray_vec3 smooth = smooth_normal(scene, hit->voxel);
+    vxm_ray_vec3 smooth = smooth_normal(scene, hit->voxel, face);
     normal = vxm_ray_vec3_unit(vxm_ray_vec3_add(vxm_ray_vec3_scale(crisp, face), scene->smoothness, smooth));
     /* A smooth surface throws no shadow from step to step. */
     for (int a = 0; a < 3; a++)
