@@ -17,26 +17,27 @@ static bool has_surfaces(int baseline) {
 
 int cli_baseline_check(cli_run *cli, const voxelize_request *given) {
   const vxm_voxelize_options *options = &given->voxelize;
-  if (!given->baseline_name)
+  if (given->baseline < 0)
     return CLI_END;
   if (given->sparse || given->coords || given->confidence || given->dry_run ||
       cli_field_wanted(&given->field))
     return cli_usage(cli,
                      "--baseline writes a grid of voxels and nothing else; leave out --sparse, --coords, "
                      "--confidence, --coverage, --distance, --labels, --color and --dry-run");
-  if (given->vote || given->thin || options->method != VXM_METHOD_VOTE ||
+  if (cli_is_given(cli, "vote") || cli_is_given(cli, "thin") || options->method != VXM_METHOD_VOTE ||
       options->split_mode != VXM_SPLIT_MODE_AUTO || options->cavities != VXM_CAVITIES_AUTO)
     return cli_usage(cli,
                      "--baseline %s is a method of its own; leave out --method, --vote, --parts, "
                      "--cavities and --thin",
-                     given->baseline_name);
+                     cli_baseline_names[given->baseline]);
   if (options->mode != VXM_MODE_SOLID && (!has_surfaces(given->baseline) || options->mode == VXM_MODE_BOTH ||
                                           options->surface > VXM_SURFACE_THIN))
     return cli_usage(cli,
                      "--baseline simple, specialized and sorted have --mode surface, conservative or thin; "
                      "of others leave out --mode");
   if (given->engine.name && given->baseline < FAIEGHI)
-    return cli_usage(cli, "--baseline %s is done by the CPU; leave out --engine", given->baseline_name);
+    return cli_usage(cli, "--baseline %s is done by the CPU; leave out --engine",
+                     cli_baseline_names[given->baseline]);
   if (!given->engine.name && given->baseline >= FAIEGHI)
     return cli_usage(cli, "--baseline faieghi is a program for OpenCL; add --engine opencl");
   return CLI_END;

@@ -7,31 +7,32 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_SPARSE };
+typedef struct request {
+  const char *tool, *path, *output, *format;
+  bool sparse, keep_polygons, keep_contacts;
+  vxm_threshold_options threshold;
+} request;
 
 static const cli_option known_options[] = {
-    {'t', "tool", "MESH", "the tool, in the model units of the grid, about its origin"},
+    {'t', "tool", "MESH", "the tool, in the model units of the grid, about its origin",
+     CLI_TEXT(request, tool)},
     {'p', "path", "FILE.csv",
      "where the tool's origin goes, a position in each line: x,y,z; or x,y,z and a\n"
      "quaternion qw,qx,qy,qz; or the 12 numbers of a 3 x 4 matrix, row after row. An\n"
      "empty line lifts the tool: to the next position nothing is cut on the way;\n"
-     "'-' is standard input, whose lines are cut as they come"},
-    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
-    {KEY_SPARSE, "sparse", NULL,
+     "'-' is standard input, whose lines are cut as they come",
+     CLI_TEXT(request, path)},
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(request, output)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, format)},
+    {0, "sparse", NULL,
      "cut an octree, whose memory follows the surface and the path [where the output\n"
-     "is .octree]"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_THRESHOLD,
+     "is .octree]",
+     CLI_FLAG(request, sparse)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_SURFACE(request),
+    CLI_OPTIONS_THRESHOLD(request),
     CLI_OPTIONS_READ,
-    {0, NULL, NULL, NULL}};
-
-typedef struct request {
-  const char *tool, *path, *output, *format;
-  bool force, sparse, keep_polygons, keep_contacts;
-  vxm_threshold_options threshold;
-} request;
+    CLI_OPTIONS_END};
 
 typedef struct outcome {
   cli_input tool;
@@ -41,32 +42,6 @@ typedef struct outcome {
   json_t *by_step; /**< voxels that each has removed; NULL = nobody asks */
   double carve_ms; /**< without the time for reading the path */
 } outcome;
-
-static int read_options(cli_run *cli, request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == 'o')
-      out->output = value;
-    else if (key == 't')
-      out->tool = value;
-    else if (key == 'p')
-      out->path = value;
-    else if (key == KEY_FORMAT)
-      out->format = value;
-    else if (key == KEY_FORCE)
-      out->force = true;
-    else if (key == KEY_SPARSE)
-      out->sparse = true;
-    else if (key == KEY_CONTACTS)
-      out->keep_contacts = true;
-    else if (key == KEY_POLYGONS) {
-      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
-      return CLI_STOP;
-  return CLI_END;
-}
 
 static int check(cli_run *cli, request *out) {
   if (cli->argument_count != 1)
@@ -84,7 +59,7 @@ static int check(cli_run *cli, request *out) {
       cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
     return CLI_STOP;
   out->sparse |= strcmp(out->format, "octree") == 0;
-  return cli_check_surface_file(cli, out->output, out->format, out->force);
+  return cli_check_surface_file(cli, out->output, out->format);
 }
 
 /* ---- Reading ---- */
@@ -218,7 +193,7 @@ static int write_rest(cli_run *cli, const request *given, outcome *made) {
 
 static int run(cli_run *cli) {
   request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
-  if (read_options(cli, &given) == CLI_STOP || check(cli, &given) == CLI_STOP)
+  if (cli_read_options(cli, &given) == CLI_STOP || check(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;

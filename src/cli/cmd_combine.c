@@ -8,43 +8,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_SPARSE };
-
 static const cli_option known_options[] = {
-    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
-    {KEY_SPARSE, "sparse", NULL,
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(combine_request, output)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(combine_request, format)},
+    {0, "sparse", NULL,
      "combine octrees, whose memory follows the surface where files are .octree or\n"
-     ".vdb [where the output is .octree]"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_THRESHOLD,
-    {0, NULL, NULL, NULL}};
+     ".vdb [where the output is .octree]",
+     CLI_FLAG(combine_request, sparse)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_SURFACE(combine_request),
+    CLI_OPTIONS_THRESHOLD(combine_request),
+    CLI_OPTIONS_END};
 
 static const char *const operations[] = {"or", "and", "minus", "xor", NULL};
 enum { OR, AND, MINUS, XOR };
-
-static int read_options(cli_run *cli, combine_request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == 'o')
-      out->output = value;
-    else if (key == KEY_FORMAT)
-      out->format = value;
-    else if (key == KEY_FORCE)
-      out->force = true;
-    else if (key == KEY_SPARSE)
-      out->sparse = true;
-    else if (key == KEY_CONTACTS)
-      out->keep_contacts = true;
-    else if (key == KEY_POLYGONS) {
-      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
-      return CLI_STOP;
-  return CLI_END;
-}
 
 /** Grids and words between them take turns: only the grids are left as arguments, the words go to `words`. */
 static int read_formula(cli_run *cli, int *words) {
@@ -74,7 +51,7 @@ static int check_names(cli_run *cli, combine_request *out) {
       cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
     return CLI_STOP;
   out->sparse |= strcmp(out->format, "octree") == 0;
-  return cli_check_surface_file(cli, out->output, out->format, out->force);
+  return cli_check_surface_file(cli, out->output, out->format);
 }
 
 /** Files hold a space to about nine digits. */
@@ -257,7 +234,7 @@ static int combine(cli_run *cli, const combine_request *given, const int *words)
 
 static int run(cli_run *cli) {
   combine_request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
-  if (read_options(cli, &given) == CLI_STOP)
+  if (cli_read_options(cli, &given) == CLI_STOP)
     return cli->status;
   int *words = calloc((size_t)cli->argument_count / 2 + 1, sizeof *words);
   if (!words)

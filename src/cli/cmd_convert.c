@@ -5,35 +5,9 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum {
-  KEY_FORMAT = CLI_KEY_COMMAND,
-  KEY_FORCE,
-  KEY_POLYGONS,
-  KEY_CONTACTS,
-  KEY_BLOCKS,
-  KEY_UP,
-  KEY_WINDOW,
-  KEY_COVERAGE
-};
-
-static const cli_option known_options[] = {
-    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
-    {KEY_WINDOW, "window", "X:X,Y:Y,Z:Z",
-     "only these voxels: along each axis from the first number, 0 or more, to before\n"
-     "the second; of .octree nothing else is read"},
-    {KEY_COVERAGE, "coverage", "N",
-     "write how much is set of each cube of N voxels along a side instead, 0 to 1; N a\n"
-     "power of two; --window counts cubes then; of .octree a layer is read at a time"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_STYLE(KEY_BLOCKS, KEY_UP),
-    CLI_OPTIONS_THRESHOLD,
-    {0, NULL, NULL, NULL}};
-
 typedef struct request {
   const char *input, *output, *format;
-  bool force, keep_polygons, keep_contacts;
+  bool keep_polygons, keep_contacts;
   int coverage; /**< 0 = not wanted */
   bool has_window;
   int64_t begin[3], end[3];
@@ -42,7 +16,8 @@ typedef struct request {
 } request;
 
 /** "0:64,10:20,0:1" */
-static int read_window(cli_run *cli, request *out, const char *value) {
+static int take_window(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  request *out = member;
   char text[128], *rest = text;
   bool is_read = strlen(value) < sizeof text;
   if (is_read)
@@ -55,47 +30,39 @@ static int read_window(cli_run *cli, request *out, const char *value) {
               cli_read_integer(&out->end[a], end, 1, 1 << 20) && out->begin[a] < out->end[a];
   }
   if (!is_read || rest)
-    return cli_usage(cli, "--window '%s' is not X:X,Y:Y,Z:Z, such as 0:64,0:64,10:20", value);
+    return cli_usage(cli, "--%s '%s' is not X:X,Y:Y,Z:Z, such as 0:64,0:64,10:20", option->name, value);
   out->has_window = true;
   return CLI_END;
 }
 
-static int read_coverage(cli_run *cli, request *out, const char *value) {
+static int take_coverage(cli_run *cli, const cli_option *option, const char *value, void *member) {
   int64_t side;
   if (!cli_read_integer(&side, value, 1, 1 << 20) || (side & (side - 1)) != 0)
-    return cli_usage(cli, "--coverage '%s' is none of 1, 2, 4, 8, ... 1048576", value);
-  out->coverage = (int)side;
+    return cli_usage(cli, "--%s '%s' is none of 1, 2, 4, 8, ... 1048576", option->name, value);
+  *(int *)member = (int)side;
   return CLI_END;
 }
 
+static const cli_option known_options[] = {
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(request, output)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, format)},
+    {0, "window", "X:X,Y:Y,Z:Z",
+     "only these voxels: along each axis from the first number, 0 or more, to before\n"
+     "the second; of .octree nothing else is read",
+     CLI_VALUES(take_window)},
+    {0, "coverage", "N",
+     "write how much is set of each cube of N voxels along a side instead, 0 to 1; N a\n"
+     "power of two; --window counts cubes then; of .octree a layer is read at a time",
+     CLI_VALUE(take_coverage, request, coverage)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_SURFACE(request),
+    CLI_OPTIONS_STYLE(request),
+    CLI_OPTIONS_THRESHOLD(request),
+    CLI_OPTIONS_END};
+
 static int read_arguments(cli_run *cli, request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == 'o')
-      out->output = value;
-    else if (key == KEY_FORMAT)
-      out->format = value;
-    else if (key == KEY_FORCE)
-      out->force = true;
-    else if (key == KEY_CONTACTS)
-      out->keep_contacts = true;
-    else if (key == KEY_BLOCKS)
-      out->style.blocks = value;
-    else if (key == KEY_UP) {
-      if (cli_read_up(cli, &out->style, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == KEY_WINDOW) {
-      if (read_window(cli, out, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == KEY_COVERAGE) {
-      if (read_coverage(cli, out, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == KEY_POLYGONS) {
-      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
-      return CLI_STOP;
+  if (cli_read_options(cli, out) == CLI_STOP)
+    return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
@@ -108,7 +75,7 @@ static int read_arguments(cli_run *cli, request *out) {
   if (cli_check_names(cli) == CLI_STOP || cli_check_style(cli, &out->style, out->format) == CLI_STOP ||
       cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
     return CLI_STOP;
-  return cli_check_surface_file(cli, out->output, out->format, out->force);
+  return cli_check_surface_file(cli, out->output, out->format);
 }
 
 static json_t *make_report(const cli_run *cli, const request *given, const cli_values *values) {

@@ -194,7 +194,8 @@ static int make_baseline(cli_run *cli, voxelize_request *given, voxelize_outcome
 }
 
 static int run(cli_run *cli) {
-  voxelize_request given = {.repair = VXM_REPAIR_OPTIONS_INIT,
+  voxelize_request given = {.baseline = -1,
+                            .repair = VXM_REPAIR_OPTIONS_INIT,
                             .space = VXM_SPACE_OPTIONS_INIT,
                             .voxelize = VXM_VOXELIZE_OPTIONS_INIT,
                             .field = CLI_FIELD_INIT,
@@ -215,7 +216,7 @@ static int run(cli_run *cli) {
   if (cli_read_divided(cli, &results.input, given.input, given.field.label_options.by, repair) != CLI_DONE)
     return CLI_FAILED;
   cli_color_take(&given.field, &results.input);
-  int status = given.baseline_name ? make_baseline(cli, &given, &results) : make_file(cli, &given, &results);
+  int status = given.baseline >= 0 ? make_baseline(cli, &given, &results) : make_file(cli, &given, &results);
   vxm_mesh_destroy(results.input.mesh);
   vxm_mesh_destroy(results.input.as_read);
   if (status == CLI_DONE) {

@@ -7,7 +7,7 @@
 
 typedef struct combine_request {
   const char *output, *format;
-  bool force, sparse, keep_polygons, keep_contacts;
+  bool sparse, keep_polygons, keep_contacts;
   vxm_threshold_options threshold;
 } combine_request;
 

@@ -22,7 +22,7 @@ typedef struct wording {
 
 static bool has_resolution(const cli_option *options) {
   for (; options && options->name; options++)
-    if (options->key == 'r')
+    if (options->letter == 'r')
       return true;
   return false;
 }

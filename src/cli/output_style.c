@@ -5,20 +5,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-int cli_read_polygons(cli_run *cli, bool *keep, const char *value) {
-  static const char *const polygons[] = {"split", "keep", NULL};
-  int choice = 0, result = cli_choose(cli, &choice, "polygons", value, polygons);
-  *keep = choice == 1;
-  return result;
-}
-
-int cli_read_up(cli_run *cli, cli_style *style, const char *value) {
-  static const char *const axes[] = {"x", "y", "z", NULL};
-  int choice = 0, result = cli_choose(cli, &choice, "up", value, axes);
-  style->up = choice + 1;
-  return result;
-}
-
 int cli_check_style(cli_run *cli, const cli_style *style, const char *format) {
   static const char *const blocks[] = {"schem", "litematic", NULL}, *const turned[] = {"schem", "litematic",
                                                                                        "glb", NULL};
@@ -38,11 +24,12 @@ int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const 
   return CLI_END;
 }
 
-int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced) {
+int cli_check_surface_file(cli_run *cli, const char *path, const char *format) {
   struct stat info;
   bool is_mesh = cli_read_choice(format, cli_mesh_formats) >= 0 ||
                  (vxm_grid_format_traits(format) & VXM_FORMAT_SURFACE) != 0;
-  if (is_forced || !is_mesh || strcmp(path, "-") == 0 || stat(path, &info) != 0 || !S_ISREG(info.st_mode))
+  if (cli_is_given(cli, "force") || !is_mesh || strcmp(path, "-") == 0 || stat(path, &info) != 0 ||
+      !S_ISREG(info.st_mode))
     return CLI_END;
   return cli_usage(cli, "%s is there already, and may be a mesh that is still needed; --force replaces it",
                    path);

@@ -8,11 +8,9 @@
 
 typedef struct voxelize_request {
   const char *input, *output, *format, *like, *confidence, *coords;
-  const char *baseline_name; /**< NULL = the library's own methods */
-  int baseline;              /**< its place in cli_baseline_names */
-  bool resolution, size, fit, pad, bounds, method, vote, parts, cavities, surface, thin, no_repair,
-      repair_options, dry_run, sparse, force, /**< which were given */
-      keep_polygons, keep_contacts;           /**< of a mesh: vxm_grid_write_options */
+  int baseline; /**< its place in cli_baseline_names; -1 = the library's own methods */
+  bool no_repair, dry_run, sparse;
+  bool keep_polygons, keep_contacts; /**< of a mesh: vxm_grid_write_options */
   cli_style style;
   vxm_repair_options repair;
   vxm_space_options space;
