@@ -162,25 +162,19 @@ static vxm_status make_published(vxm_grid **out, cli_run *cli, voxelize_request 
 }
 
 int cli_baseline_write(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   vxm_grid *grid = NULL;
-  options.format = given->format;
-  options.keep_polygons = given->keep_polygons;
-  options.keep_contacts = given->keep_contacts;
-  options.blocks = given->style.blocks;
-  options.up = given->style.up;
   double start = cli_clock();
   vxm_status status = given->baseline >= FAIEGHI ? make_published(&grid, cli, given, results)
                                                  : make_baseline(&grid, cli, given, results);
   double made = cli_clock();
   if (status == VXM_OK)
-    status = vxm_grid_write(grid, given->output, &options, &cli->error);
+    status = vxm_grid_write(grid, given->output, &given->write, &cli->error);
   results->voxelize_ms = made - start;
   results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     results->voxelize.voxels = vxm_grid_count(grid);
     results->voxelize.hash = vxm_grid_hash(grid);
-    cli_warn_lattice(cli, given->output, given->format, &results->space);
+    cli_warn_lattice(cli, given->output, given->write.format, &results->space);
   }
   vxm_grid_destroy(grid);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);

@@ -313,15 +313,13 @@ void cli_mesh_extensions_free(const char **extensions);
  * be the mesh that all else is made of, without --force. Grids, pictures and reports replace what was there.
  */
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format);
-/** How blocks and meshes stand: of vxm_grid_write_options. */
-typedef struct cli_style {
-  const char *blocks;
-  int up;
-} cli_style;
-/** CLI_STOP if the format has no use for what was given. */
-int cli_check_style(cli_run *cli, const cli_style *style, const char *format);
-/** CLI_STOP if the format is not one of meshes that heed --polygons keep and --no-manifold. */
-int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const char *format);
+/** CLI_STOP if the format has no use for --blocks, --up, --polygons keep or --no-manifold. */
+int cli_check_style(cli_run *cli, const vxm_grid_write_options *write);
+/** All checks of a grid's -o, after cli_reads; finds the format, one of these. */
+int cli_check_grid_output(cli_run *cli, const char *path, vxm_grid_write_options *write, cli_formats formats,
+                          bool may_be_labels);
+/** The same of --polygons keep alone. */
+int cli_check_polygons(cli_run *cli, bool keep_polygons, const char *format);
 
 /* ---- progress.c ---- */
 

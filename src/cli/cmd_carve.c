@@ -8,9 +8,10 @@
 #include <string.h>
 
 typedef struct request {
-  const char *tool, *path, *output, *format;
-  bool sparse, keep_polygons, keep_contacts;
+  const char *tool, *path, *output;
+  bool sparse;
   vxm_threshold_options threshold;
+  vxm_grid_write_options write;
 } request;
 
 static const cli_option known_options[] = {
@@ -23,7 +24,7 @@ static const cli_option known_options[] = {
      "'-' is standard input, whose lines are cut as they come",
      CLI_TEXT(request, path)},
     {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(request, output)},
-    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, format)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, write.format)},
     {0, "sparse", NULL,
      "cut an octree, whose memory follows the surface and the path [where the output\n"
      "is .octree]",
@@ -48,18 +49,13 @@ static int check(cli_run *cli, request *out) {
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   if (!out->tool || !out->path)
     return cli_usage(cli, "%s is missing", out->tool ? "-p PATH.csv" : "-t TOOL");
-  cli_formats formats = cli_formats_with(VXM_FORMAT_BITS);
-  out->format = cli_output_format(cli, out->output, out->format, formats.name);
-  if (!out->format)
-    return CLI_STOP;
   cli_reads(cli, out->tool);
   cli_reads(cli, out->path);
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format, false));
-  if (cli_check_names(cli) == CLI_STOP ||
-      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
+  if (cli_check_grid_output(cli, out->output, &out->write, cli_formats_with(VXM_FORMAT_BITS), false) ==
+      CLI_STOP)
     return CLI_STOP;
-  out->sparse |= strcmp(out->format, "octree") == 0;
-  return cli_check_surface_file(cli, out->output, out->format);
+  out->sparse |= strcmp(out->write.format, "octree") == 0;
+  return CLI_END;
 }
 
 /* ---- Reading ---- */
@@ -168,17 +164,13 @@ static json_t *make_report(const cli_run *cli, const request *given, outcome *ma
 }
 
 static int write_rest(cli_run *cli, const request *given, outcome *made) {
-  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
-  write.format = given->format;
-  write.keep_polygons = given->keep_polygons;
-  write.keep_contacts = given->keep_contacts;
-  vxm_status status = made->sparse ? vxm_sparse_write(made->sparse, given->output, &write, &cli->error)
-                                   : vxm_grid_write(made->grid, given->output, &write, &cli->error);
+  vxm_status status = made->sparse ? vxm_sparse_write(made->sparse, given->output, &given->write, &cli->error)
+                                   : vxm_grid_write(made->grid, given->output, &given->write, &cli->error);
   if (status != VXM_OK)
     return cli_fail(cli);
   uint64_t hash = made->sparse ? vxm_sparse_hash(made->sparse) : vxm_grid_hash(made->grid);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, space_of(made));
+  cli_warn_lattice(cli, given->output, given->write.format, space_of(made));
   if (cli_summary(cli)) {
     cli_rows_space(cli, space_of(made));
     cli_row(cli, "steps", "%" PRId64 " in %.1f ms (%.0f a second)", made->steps, made->carve_ms,
@@ -186,13 +178,13 @@ static int write_rest(cli_run *cli, const request *given, outcome *made) {
     cli_row(cli, "removed", "%" PRId64 " of %" PRId64 " voxels", made->removed, made->before);
     cli_row(cli, "voxels", "%" PRId64, made->before - made->removed);
     cli_row(cli, "hash", "%016" PRIx64, hash);
-    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
   }
   return cli_finish(cli, make_report(cli, given, made, hash));
 }
 
 static int run(cli_run *cli) {
-  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT, .write = VXM_GRID_WRITE_OPTIONS_INIT};
   if (cli_read_options(cli, &given) == CLI_STOP || check(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))

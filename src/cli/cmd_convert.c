@@ -6,13 +6,12 @@
 #include <string.h>
 
 typedef struct request {
-  const char *input, *output, *format;
-  bool keep_polygons, keep_contacts;
+  const char *input, *output;
   int coverage; /**< 0 = not wanted */
   bool has_window;
   int64_t begin[3], end[3];
-  cli_style style;
   vxm_threshold_options threshold;
+  vxm_grid_write_options write;
 } request;
 
 /** "0:64,10:20,0:1" */
@@ -45,7 +44,7 @@ static int take_coverage(cli_run *cli, const cli_option *option, const char *val
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(request, output)},
-    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, format)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, write.format)},
     {0, "window", "X:X,Y:Y,Z:Z",
      "only these voxels: along each axis from the first number, 0 or more, to before\n"
      "the second; of .octree nothing else is read",
@@ -68,14 +67,7 @@ static int read_arguments(cli_run *cli, request *out) {
   out->input = cli->arguments[0];
   unsigned any = VXM_FORMAT_BITS | VXM_FORMAT_NUMBERS | VXM_FORMAT_LABELS | VXM_FORMAT_COLORS;
   cli_formats formats = cli_formats_with(out->coverage ? VXM_FORMAT_NUMBERS : any);
-  out->format = cli_output_format(cli, out->output, out->format, formats.name);
-  if (!out->format)
-    return CLI_STOP;
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
-  if (cli_check_names(cli) == CLI_STOP || cli_check_style(cli, &out->style, out->format) == CLI_STOP ||
-      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
-    return CLI_STOP;
-  return cli_check_surface_file(cli, out->output, out->format);
+  return cli_check_grid_output(cli, out->output, &out->write, formats, true);
 }
 
 static json_t *make_report(const cli_run *cli, const request *given, const cli_values *values) {
@@ -98,7 +90,7 @@ static bool are_labels(const vxm_field *field) {
 
 /** Whether the output can have the numbers as they are. */
 static bool keeps_numbers(const request *given, const vxm_field *field) {
-  unsigned traits = vxm_grid_format_traits(given->format);
+  unsigned traits = vxm_grid_format_traits(given->write.format);
   if (vxm_field_kind_of(field) == VXM_FIELD_COLORS)
     return (traits & (VXM_FORMAT_COLORS | VXM_FORMAT_NUMBERS)) != 0;
   return (traits & VXM_FORMAT_NUMBERS) || ((traits & VXM_FORMAT_LABELS) && are_labels(field));
@@ -175,34 +167,29 @@ static int settle(cli_run *cli, const request *given, cli_values *values) {
     return CLI_DONE;
   if (values->grid || (!cli_threshold_given(&given->threshold) && keeps_numbers(given, values->field)))
     return CLI_DONE;
-  snprintf(why, sizeof why, ".%s holds only set and clear voxels", given->format);
+  snprintf(why, sizeof why, ".%s holds only set and clear voxels", given->write.format);
   return cli_values_to_bits(cli, values, &given->threshold, given->input, why);
 }
 
 static int convert(cli_run *cli, const request *given, const cli_values *values) {
-  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
-  write.format = given->format;
-  write.keep_polygons = given->keep_polygons;
-  write.keep_contacts = given->keep_contacts;
-  write.blocks = given->style.blocks;
-  write.up = given->style.up;
-  vxm_status status = values->grid ? vxm_grid_write(values->grid, given->output, &write, &cli->error)
-                                   : vxm_field_write(values->field, given->output, &write, &cli->error);
+  vxm_status status = values->grid
+                          ? vxm_grid_write(values->grid, given->output, &given->write, &cli->error)
+                          : vxm_field_write(values->field, given->output, &given->write, &cli->error);
   if (status != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, cli_values_space(values));
+  cli_warn_lattice(cli, given->output, given->write.format, cli_values_space(values));
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
     cli_rows_space(cli, cli_values_space(values));
     cli_values_row(cli, values);
-    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
   }
   return cli_finish(cli, make_report(cli, given, values));
 }
 
 static int run(cli_run *cli) {
-  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT, .write = VXM_GRID_WRITE_OPTIONS_INIT};
   if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))

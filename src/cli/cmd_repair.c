@@ -192,8 +192,7 @@ static int read_arguments(cli_run *cli, request *out) {
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
   out->write.format = cli_output_format(cli, out->output, out->format, cli_mesh_formats);
-  if (!out->write.format ||
-      cli_check_quads(cli, out->write.keep_polygons, false, out->write.format) == CLI_STOP)
+  if (!out->write.format || cli_check_polygons(cli, out->write.keep_polygons, out->write.format) == CLI_STOP)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, false);
   cli_writes(cli, "--locate", out->defects.locate, false);

@@ -144,22 +144,20 @@ static int finish(cli_run *cli, const combine_request *given, const vxm_field *n
     if (vxm_field_label_count(names) > 0)
       cli_row(cli, "labels", "%" PRId64, vxm_field_label_count(names));
     tell_renumbered(cli, renumbered);
-    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
   }
   return cli_finish(cli, report);
 }
 
 int combine_write_field(cli_run *cli, const combine_request *given, const vxm_field *field, json_t *report,
                         const json_t *renumbered) {
-  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
   const cli_values values = {NULL, (vxm_field *)field};
-  write.format = given->format;
-  if (vxm_field_write(field, given->output, &write, &cli->error) != VXM_OK) {
+  if (vxm_field_write(field, given->output, &given->write, &cli->error) != VXM_OK) {
     json_decref(report);
     return cli_fail(cli);
   }
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, vxm_field_space(field));
+  cli_warn_lattice(cli, given->output, given->write.format, vxm_field_space(field));
   json_object_set_new(report, "grid", cli_json_space(vxm_field_space(field)));
   cli_values_json(report, &values, false);
   if (cli_summary(cli)) {
@@ -172,7 +170,7 @@ int combine_write_field(cli_run *cli, const combine_request *given, const vxm_fi
 /* ---- Octree files ---- */
 
 bool combine_are_octrees(const cli_run *cli, const combine_request *given) {
-  bool yes = strcmp(given->format, "octree") == 0 && strcmp(given->output, "-") != 0 &&
+  bool yes = strcmp(given->write.format, "octree") == 0 && strcmp(given->output, "-") != 0 &&
              !cli_threshold_given(&given->threshold);
   for (int i = 0; i < cli->argument_count; i++)
     yes = yes && cli_is_extension(cli->arguments[i], "octree");
@@ -231,7 +229,7 @@ static int tell_file(cli_run *cli, const combine_request *given, const vxm_space
   json_object_set_new(report, "grid", cli_json_space(space));
   json_object_set_new(report, "values", values);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, space);
+  cli_warn_lattice(cli, given->output, given->write.format, space);
   if (cli_summary(cli)) {
     cli_rows_space(cli, space);
     cli_row(cli, "values", "%s%s%s", kind == VXM_FIELD_NUMBERS ? "" : vxm_field_kind_name(kind),

@@ -97,30 +97,30 @@
         CLI_RUN_VALUE(cli_take_choice, read.external, .choices = cli_external_files)      \
   }
 
-/** Those of grids that are written as meshes, into `keep_polygons` and `keep_contacts`. */
+/** Those of grids that are written as meshes, into a vxm_grid_write_options `write`. */
 #define CLI_OPTIONS_SURFACE(type)                                                      \
   {0, "polygons", "split|keep",                                                        \
    "of a mesh: split = write triangles; keep = rectangles with further corners,\n"     \
    "in .obj, .ply and .off [split]",                                                   \
-   CLI_CHOICE(type, keep_polygons, cli_polygon_kinds)},                                \
+   CLI_CHOICE(type, write.keep_polygons, cli_polygon_kinds)},                          \
   {                                                                                    \
     0, "no-manifold", NULL,                                                            \
         "of a mesh: leave voxels joined that touch in an edge or a corner alone, so\n" \
         "that edges may have four faces; else either side has vertices of its own,\n"  \
         "1/256 of a voxel within; where the numbers of the file, the 32-bit\n"         \
         "floats of .stl, are too coarse to tell vertices apart, there is no file",     \
-        CLI_FLAG(type, keep_contacts)                                                  \
+        CLI_FLAG(type, write.keep_contacts)                                            \
   }
-/** How blocks and meshes stand: into a cli_style `style`. */
+/** How blocks and meshes stand, likewise. */
 #define CLI_OPTIONS_STYLE(type)                                                               \
   {0, "blocks", "NAME[,NAME...]",                                                             \
    "of .schem and .litematic: Minecraft's block for voxels, those for labels in\n"            \
    "turn, or those that colours choose from [stone; concrete, wool and terracotta in\n"       \
    "16 dyes; 83 plain cubes]",                                                                \
-   CLI_TEXT(type, style.blocks)},                                                             \
+   CLI_TEXT(type, write.blocks)},                                                             \
   {                                                                                           \
     0, "up", "x|y|z", "of .schem, .litematic and .glb: axis of the model that points up [z]", \
-        CLI_CHOICE_FROM(1, type, style.up, cli_axes)                                          \
+        CLI_CHOICE_FROM(1, type, write.up, cli_axes)                                          \
   }
 #define CLI_OPTION_FORCE \
   { 0, "force", NULL, "replace a mesh that is there", CLI_NOTED }

@@ -67,7 +67,7 @@ static int take_bounds(cli_run *cli, const cli_option *option, const char *value
 
 const cli_option voxelize_options[] = {
     {'o', "output", "GRID", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(voxelize_request, output)},
-    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(voxelize_request, format)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(voxelize_request, write.format)},
     CLI_OPTION_FORCE,
     CLI_OPTIONS_SURFACE(voxelize_request),
     CLI_OPTIONS_STYLE(voxelize_request),
@@ -247,12 +247,12 @@ static int check_names(cli_run *cli, const voxelize_request *given) {
   if (given->field.color &&
       (given->field.color_options.by == VXM_COLOR_GLSL || given->field.color_options.by == VXM_COLOR_VOLUME))
     cli_reads(cli, given->field.color_name);
-  cli_writes(cli, "-o", given->output, cli_has_json(given->format, given->field.labels));
+  cli_writes(cli, "-o", given->output, cli_has_json(given->write.format, given->field.labels));
   cli_writes(cli, "--confidence", given->confidence, true);
   cli_writes(cli, "--coords", given->coords, false);
   if (cli_check_names(cli) == CLI_STOP)
     return CLI_STOP;
-  return given->dry_run ? CLI_END : cli_check_surface_file(cli, given->output, given->format);
+  return given->dry_run ? CLI_END : cli_check_surface_file(cli, given->output, given->write.format);
 }
 
 bool voxelize_is_sliced(const char *format) {
@@ -277,25 +277,24 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
                                                     : CLI_SIZED_BY_RESOLUTION;
   cli_formats formats =
       cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_formats_with(VXM_FORMAT_BITS);
-  out->format = cli_output_format(cli, out->output, out->format, formats.name);
-  bool is_octree = out->format && strcmp(out->format, "octree") == 0;
+  out->write.format = cli_output_format(cli, out->output, out->write.format, formats.name);
+  bool is_octree = out->write.format && strcmp(out->write.format, "octree") == 0;
   /* faster at any resolution, and in little memory; an engine and the confidence fill whole grids */
   out->sparse |= is_octree && !cli_field_wanted(&out->field) && !out->confidence && !out->engine.name &&
                  out->baseline < 0;
-  if (out->format && out->sparse && !voxelize_is_sliced(out->format))
-    return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
-  if (out->format && out->sparse && cli_field_wanted(&out->field)) {
+  if (out->write.format && out->sparse && !voxelize_is_sliced(out->write.format))
+    return cli_usage(cli, "--sparse: .%s needs the whole grid", out->write.format);
+  if (out->write.format && out->sparse && cli_field_wanted(&out->field)) {
     if (!is_octree)
       return cli_usage(cli,
                        "--sparse: of --coverage, --distance, --labels and --color .octree alone is "
                        "sparse, not .%s",
-                       out->format);
+                       out->write.format);
     out->sparse = false; /* the file is an octree as it is */
   }
-  if (out->format && (cli_check_style(cli, &out->style, out->format) == CLI_STOP ||
-                      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP))
+  if (out->write.format && cli_check_style(cli, &out->write) == CLI_STOP)
     return CLI_STOP;
-  out->field.label_options.blocks = out->field.color_options.blocks = out->style.blocks;
-  out->field.label_options.up = out->field.color_options.up = out->style.up;
-  return out->format ? check_names(cli, out) : CLI_STOP;
+  out->field.label_options.blocks = out->field.color_options.blocks = out->write.blocks;
+  out->field.label_options.up = out->field.color_options.up = out->write.up;
+  return out->write.format ? check_names(cli, out) : CLI_STOP;
 }

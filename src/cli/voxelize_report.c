@@ -206,5 +206,5 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
     cli_row(cli, "threads", "%d", vxm_context_threads(cli->context));
     cli_row(cli, "memory", "%s", cli_bytes_text(bytes, vxm_context_peak_bytes(cli->context)));
   }
-  cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+  cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
 }
