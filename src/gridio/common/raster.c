@@ -152,3 +152,15 @@ vxm_status vxm_raster_bits(vxm_grid **out, const vxm_field *field, vxm_bits_rule
     (*out)->warnings = field->warnings;
   return status;
 }
+
+vxm_status vxm_raster_bits_of_file(vxm_grid **out,
+                                   vxm_status (*read_field)(vxm_field **out, const vxm_input *input,
+                                                            vxm_error *error),
+                                   const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  vxm_field *field = NULL;
+  vxm_status status = read_field(&field, input, error);
+  if (status == VXM_OK)
+    status = vxm_raster_bits(out, field, rule, input->name, error);
+  vxm_field_destroy(field);
+  return status;
+}

@@ -177,16 +177,10 @@ vxm_status vxm_hdf5_read_field(vxm_field **out, const vxm_input *input, vxm_erro
 }
 
 vxm_status vxm_hdf5_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, vxm_hdf5_read_field, input, rule, error);
   receipt r = {.input = input, .wants_space = true};
-  vxm_field *field = NULL;
   vxm_error local = VXM_ERROR_INIT;
-  if (rule != VXM_BITS_NONE) {
-    vxm_status status = vxm_hdf5_read_field(&field, input, error);
-    if (status == VXM_OK)
-      status = vxm_raster_bits(out, field, rule, input->name, error);
-    vxm_field_destroy(field);
-    return status;
-  }
   vxm_status status = receive(&r, &local);
   if (status == VXM_OK) {
     vxm_about_destroy(&r.about);

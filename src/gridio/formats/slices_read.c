@@ -258,25 +258,23 @@ static void take_bits(vxm_field *field) {
     field->values[v] &= 1;
 }
 
+static vxm_status read_pictures(vxm_field **out, const vxm_input *input, vxm_error *error) {
+  vxm_status status = read_field(out, input, error);
+  if (status == VXM_OK)
+    take_bits(*out);
+  return status;
+}
+
 static vxm_status read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
-  vxm_field *field = NULL;
-  vxm_status status;
-  if (rule == VXM_BITS_NONE) {
-    sequence s;
-    status = open_sequence(&s, input, error);
-    vxm_about_destroy(&s.about);
-    if (status == VXM_OK)
-      status = vxm_grid_create(out, s.context, &s.raster.space, error);
-    if (status == VXM_OK)
-      warn(&s, &(*out)->warnings);
-    return status;
-  }
-  status = read_field(&field, input, error);
-  if (status == VXM_OK) {
-    take_bits(field);
-    status = vxm_raster_bits(out, field, rule, input->name, error);
-  }
-  vxm_field_destroy(field);
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, read_pictures, input, rule, error);
+  sequence s;
+  vxm_status status = open_sequence(&s, input, error);
+  vxm_about_destroy(&s.about);
+  if (status == VXM_OK)
+    status = vxm_grid_create(out, s.context, &s.raster.space, error);
+  if (status == VXM_OK)
+    warn(&s, &(*out)->warnings);
   return status;
 }
 

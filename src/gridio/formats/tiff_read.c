@@ -351,19 +351,13 @@ vxm_status vxm_tiff_read_field(vxm_field **out, const vxm_input *input, vxm_erro
 }
 
 vxm_status vxm_tiff_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, vxm_tiff_read_field, input, rule, error);
   stack s;
-  vxm_field *field = NULL;
-  if (rule == VXM_BITS_NONE) {
-    vxm_status status = read_header(&s, input, error);
-    if (status == VXM_OK)
-      status = vxm_grid_create(out, input->context, &s.raster.space, error);
-    if (status == VXM_OK)
-      warn_place(&s, &(*out)->warnings);
-    return status;
-  }
-  vxm_status status = vxm_tiff_read_field(&field, input, error);
+  vxm_status status = read_header(&s, input, error);
   if (status == VXM_OK)
-    status = vxm_raster_bits(out, field, rule, input->name, error);
-  vxm_field_destroy(field);
+    status = vxm_grid_create(out, input->context, &s.raster.space, error);
+  if (status == VXM_OK)
+    warn_place(&s, &(*out)->warnings);
   return status;
 }

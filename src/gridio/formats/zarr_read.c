@@ -290,12 +290,6 @@ vxm_status vxm_zarr_read_field(vxm_field **out, const vxm_input *input, vxm_erro
 }
 
 vxm_status vxm_zarr_read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
-  vxm_field *field = NULL;
-  if (rule == VXM_BITS_NONE)
-    return read_folder(NULL, out, input, error);
-  vxm_status status = read_folder(&field, NULL, input, error);
-  if (status == VXM_OK)
-    status = vxm_raster_bits(out, field, rule, input->name, error);
-  vxm_field_destroy(field);
-  return status;
+  return rule == VXM_BITS_NONE ? read_folder(NULL, out, input, error)
+                               : vxm_raster_bits_of_file(out, vxm_zarr_read_field, input, rule, error);
 }
