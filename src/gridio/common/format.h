@@ -153,6 +153,10 @@ vxm_status vxm_field_write_file(const vxm_field *field, const char *path,
 vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status status, const char *why,
                             vxm_error *error);
 
+/** Refuses numbers that are no labels from 0 to `max`; colours are right. VXM_ERROR_RANGE */
+vxm_status vxm_field_check_labels(const vxm_field *field, const char *path, int max, const char *why,
+                                  vxm_error *error);
+
 /** One per file format. */
 extern const vxm_grid_format vxm_format_binvox, vxm_format_bt, vxm_format_glb, vxm_format_h5,
     vxm_format_litematic, vxm_format_nii, vxm_format_nii_gz, vxm_format_npy, vxm_format_nrrd,
