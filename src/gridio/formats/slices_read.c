@@ -100,18 +100,11 @@ static void take_pixels(unsigned char *to, const unsigned char *pixels, const se
 }
 
 static vxm_status decode(unsigned char *to, const sequence *s, const vxm_input *input, vxm_error *error) {
-  const vxm_module_need need = {"images", "libpng-dev libjpeg-dev", "reading slices"};
   const vxm_reader_request request = {
       .data = input->data, .size = input->size, .name = input->name, .hint = "slice"};
-  vxm_references none = VXM_REFERENCES_NONE;
   vxm_error local = VXM_ERROR_INIT;
-  vxm_soup *made = NULL;
-  none.allowed = VXM_EXTERNAL_NONE;
-  vxm_status status = vxm_soup_create(&made, s->context, "", &local);
-  if (status == VXM_OK)
-    status = vxm_appearance_create(&made->appearance, s->context, &local);
-  if (status == VXM_OK)
-    status = vxm_reader_process_mesh(made, &need, &request, &none, &local);
+  vxm_soup *made;
+  vxm_status status = vxm_reader_process_picture(&made, s->context, "reading slices", &request, &local);
   const vxm_image *image =
       status == VXM_OK && made->appearance->image_count == 1 ? made->appearance->images : NULL;
   if (image && image->bytes && image->width == s->first.width && image->height == s->first.height)
