@@ -40,7 +40,7 @@ typedef struct vxm_grid_writer_kind {
   /** Sets up `state` and writes the header. */
   vxm_status (*begin)(vxm_grid_writer *writer, vxm_error *error);
   vxm_status (*put)(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
-  /** Writes what is left after the last slice. */
+  /** Writes what is left after the last slice; NULL = nothing. */
   vxm_status (*end)(vxm_grid_writer *writer, vxm_error *error);
   /** Frees what `state` holds, whether or not the file was written; NULL = it holds nothing. */
   void (*drop)(vxm_grid_writer *writer);

@@ -71,7 +71,7 @@ static void warn_array(receipt *r, const vxm_sink_array *array) {
              array->fits);
   if (r->has_odd_axes)
     vxm_axes_warn(&r->warnings);
-  vxm_place_warn(&r->warnings, array->placed);
+  vxm_place_warn(&r->warnings, array->known_place);
 }
 
 /** Where nothing arrives nothing is written to, so that a short file cannot take much memory. */
@@ -79,8 +79,8 @@ static vxm_status take_array(void *payload, const vxm_sink_array *array, vxm_err
   receipt *r = payload;
   for (int a = 0; a < 3; a++) {
     r->space.dims[r->axis[a]] = array->shape[a];
-    r->space.origin[a] = array->placed & VXM_PLACE_ORIGIN ? array->place[a] : 0;
-    r->space.voxel_size[a] = array->placed & VXM_PLACE_SIZE ? array->place[3 + a] : 1;
+    r->space.origin[a] = array->known_place & VXM_PLACE_ORIGIN ? array->place[a] : 0;
+    r->space.voxel_size[a] = array->known_place & VXM_PLACE_SIZE ? array->place[3 + a] : 1;
   }
   vxm_status status = vxm_space_check_file(&r->space, r->input, 0, error);
   if (status != VXM_OK)

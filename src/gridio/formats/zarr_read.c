@@ -223,7 +223,7 @@ static vxm_status load_chunks(loading *l, vxm_error *error) {
 static void warn(const vxm_zarr_array *array, vxm_warnings *warnings) {
   if (array->has_odd_axes)
     vxm_axes_warn(warnings);
-  vxm_place_warn(warnings, array->placed);
+  vxm_place_warn(warnings, array->known_place);
 }
 
 static vxm_status load_values(vxm_field **out, vxm_zarr_array *array, int folder, const vxm_input *input,
