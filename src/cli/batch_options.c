@@ -64,7 +64,7 @@ static int take_shard(cli_run *cli, const cli_option *option, const char *value,
   return CLI_END;
 }
 
-/** A limit of each mesh, until the run begins. */
+/** The limit of each mesh; cmd_batch.c sees to it that it does not bind this program. */
 static int take_memory(cli_run *cli, const cli_option *option, const char *value, void *request) {
   (void)request;
   return cli_take_size(cli, option, value, &cli->limits.memory_limit);
@@ -77,7 +77,7 @@ static int take_seconds(cli_run *cli, const cli_option *option, const char *valu
   return cli_usage(cli, "--%s '%s' is not a number of seconds", option->name, value);
 }
 
-/** A picture for each slice is no file of a grid. */
+/** All but .png, which is a file for each slice. */
 static cli_formats grid_formats(void) {
   return cli_formats_without(cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_COLORS), "png");
 }
@@ -127,7 +127,7 @@ static int export_choice(cli_run *cli, const cli_option *option, const char *val
   return hand_on(cli, words, option, value);
 }
 
-/** An option of voxelize; each mesh would write the file that one of one mesh names. */
+/** An option of voxelize. Those that name a file are refused: each mesh would write the same. */
 static int take_grid_option(cli_run *cli, batch_request *out, const cli_option *option, const char *value) {
   if (cli_is_refused(cli->command, option->name))
     return cli_usage(cli, "--%s is about one mesh; leave it out of a batch", option->name);
@@ -207,8 +207,7 @@ static int processors(void) {
   return count < 1 ? 1 : count > 512 ? 512 : count;
 }
 
-/** How meshes are read has been taken for this program (CLI_OPTIONS_READ), and is for those that make grids.
- */
+/** CLI_OPTIONS_READ have gone into cli->read; the programs that make the grids need them as words. */
 static bool hand_on_reading(const cli_run *cli, batch_words *words) {
   const vxm_mesh_read_options usual = VXM_MESH_READ_OPTIONS_INIT;
   bool good = true;

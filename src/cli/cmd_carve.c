@@ -87,7 +87,7 @@ static int step(cli_run *cli, outcome *made, vxm_carver *carver, const cli_toolp
   return CLI_DONE;
 }
 
-static int go(cli_run *cli, outcome *made, vxm_carver *carver, cli_toolpath *toolpath) {
+static int follow_path(cli_run *cli, outcome *made, vxm_carver *carver, cli_toolpath *toolpath) {
   for (;;) {
     double pose[12];
     bool is_lifted, is_end;
@@ -120,7 +120,7 @@ static int carve(cli_run *cli, outcome *made, const request *given) {
   int status = created == VXM_OK ? cli_toolpath_open(cli, &toolpath, given->path) : cli_fail(cli);
   made->before = made->sparse ? vxm_sparse_count(made->sparse) : vxm_grid_count(made->grid);
   if (status == CLI_DONE)
-    status = go(cli, made, carver, &toolpath);
+    status = follow_path(cli, made, carver, &toolpath);
   if (status == CLI_DONE && made->steps == 0)
     status = cli_fail_text(cli, "%s: there is no position in it", toolpath.name);
   if (status == CLI_DONE && made->sparse)
@@ -163,7 +163,7 @@ static json_t *make_report(const cli_run *cli, const request *given, outcome *ma
   return report;
 }
 
-static int write_rest(cli_run *cli, const request *given, outcome *made) {
+static int write_result(cli_run *cli, const request *given, outcome *made) {
   vxm_status status = made->sparse ? vxm_sparse_write(made->sparse, given->output, &given->write, &cli->error)
                                    : vxm_grid_write(made->grid, given->output, &given->write, &cli->error);
   if (status != VXM_OK)
@@ -197,7 +197,7 @@ static int run(cli_run *cli) {
   if (status == CLI_DONE)
     status = carve(cli, &made, &given);
   if (status == CLI_DONE)
-    status = write_rest(cli, &given, &made);
+    status = write_result(cli, &given, &made);
   vxm_mesh_destroy(made.tool.mesh);
   vxm_grid_destroy(made.grid);
   vxm_sparse_destroy(made.sparse);

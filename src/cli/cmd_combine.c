@@ -157,7 +157,7 @@ static outcome outcome_of(const combine_operand *set) {
   return (outcome){vxm_grid_space(set->grid), vxm_grid_count(set->grid), vxm_grid_hash(set->grid)};
 }
 
-/** What was asked for. */
+/** The part of the report that tells what was asked for. */
 static json_t *make_report(const cli_run *cli, const combine_request *given, const int *words) {
   json_t *report = json_object(), *inputs = json_array(), *names = json_array();
   for (int i = 0; i < cli->argument_count; i++)

@@ -80,7 +80,7 @@ static json_t *make_report(const cli_run *cli, const request *given, const cli_v
   return report;
 }
 
-/** Whether the numbers are whole, and labels as far as one knows; bits in another type are bits. */
+/** Whether a field is of labels: it says so, or its numbers are whole and more than 0 and 1. */
 static bool are_labels(const vxm_field *field) {
   vxm_scalar scalar = vxm_field_scalar(field);
   vxm_field_kind kind = vxm_field_kind_of(field);
@@ -88,7 +88,7 @@ static bool are_labels(const vxm_field *field) {
   return kind == VXM_FIELD_LABELS || (kind == VXM_FIELD_NUMBERS && !is_float && !vxm_field_is_mask(field));
 }
 
-/** Whether the output can have the numbers as they are. */
+/** Whether the output's format can hold the values of a field. */
 static bool keeps_numbers(const request *given, const vxm_field *field) {
   unsigned traits = vxm_grid_format_traits(given->write.format);
   if (vxm_field_kind_of(field) == VXM_FIELD_COLORS)
@@ -96,7 +96,7 @@ static bool keeps_numbers(const request *given, const vxm_field *field) {
   return (traits & VXM_FORMAT_NUMBERS) || ((traits & VXM_FORMAT_LABELS) && are_labels(field));
 }
 
-/** Leaves the window of what a file holds. */
+/** Cuts the values down to --window. */
 static vxm_status cut(cli_run *cli, const request *given, cli_values *values) {
   cli_values part = {NULL, NULL};
   vxm_status status =
@@ -118,7 +118,7 @@ static vxm_status read_part(cli_run *cli, const request *given, cli_values *out)
   return status;
 }
 
-/** Coverage by the index and a part of the octree at a time. */
+/** Coverage of an octree file, of which a part at a time is in memory. */
 static vxm_status count_file(cli_run *cli, const request *given, const vxm_coverage_options *options,
                              vxm_field **out) {
   vxm_sparse_file *file;
@@ -158,12 +158,12 @@ static int read_values(cli_run *cli, const request *given, cli_values *values) {
 }
 
 /** Numbers stay numbers where the output holds them; else they become bits, or are refused. */
-static int settle(cli_run *cli, const request *given, cli_values *values) {
+static int choose_bits_or_numbers(cli_run *cli, const request *given, cli_values *values) {
   char why[64];
   if (values->grid && cli_threshold_given(&given->threshold))
     cli_warn(cli, "%s holds set and clear voxels already: --threshold and --below are not applied",
              cli_shown(given->input, "<stdin>"));
-  if (given->coverage) /* was for what has been counted */
+  if (given->coverage) /* the threshold has been applied before the coverage was counted */
     return CLI_DONE;
   if (values->grid || (!cli_threshold_given(&given->threshold) && keeps_numbers(given, values->field)))
     return CLI_DONE;
@@ -197,7 +197,7 @@ static int run(cli_run *cli) {
   cli_values values = {NULL, NULL};
   if (read_values(cli, &given, &values) != CLI_DONE)
     return CLI_FAILED;
-  int status = settle(cli, &given, &values);
+  int status = choose_bits_or_numbers(cli, &given, &values);
   if (status == CLI_DONE)
     status = convert(cli, &given, &values);
   cli_values_free(&values);

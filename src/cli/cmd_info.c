@@ -123,12 +123,12 @@ static int count_openings(cli_run *cli, cli_openings *out, const description *d)
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-/** What has been told so far. */
+/** What stands in the output so far. */
 typedef struct told {
-  bool any, is_grid; /**< and of what the last of it was */
+  bool any, is_grid; /**< is_grid: the last file was one */
 } told;
 
-/** Whether a file is the first of all, or stands behind one of the other kind. */
+/** Whether a file needs a heading: it is the first, or follows one of the other kind. */
 static bool begins_table(told *before, bool is_grid) {
   bool begins = !before->any || before->is_grid != is_grid;
   *before = (told){true, is_grid};

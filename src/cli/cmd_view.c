@@ -296,7 +296,7 @@ static int check_page(cli_run *cli, const char *path) {
   return CLI_DONE;
 }
 
-/** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
+/** Reads a grid or a mesh, as the name tells; where it does not tell, tries a grid first. */
 static int read_input(cli_run *cli, subject *out, request *given) {
   static const char *const of_meshes[] = {"resolution", "color", "labels", NULL};
   const char *path = given->input, *of_mesh = cli_last_given(cli, of_meshes);
@@ -340,7 +340,7 @@ static vxm_status write_page(cli_run *cli, const request *given, const subject *
                         &cli->error);
 }
 
-/** Bits as they are, or numbers by the threshold, or else by what they are. */
+/** Draws set voxels; numbers by the threshold where one is given, else in the way of their kind. */
 static vxm_status draw(cli_run *cli, const request *given, const cli_values *values) {
   bool is_given = cli_threshold_given(&given->threshold);
   if (values->grid)

@@ -33,7 +33,7 @@ static double voxels_along(const vxm_mesh *mesh, const vxm_space *space) {
   return most;
 }
 
-/** A grid of another model's units, most often. */
+/** Warns where the model fills few voxels of the grid of --like: most often that is in other units. */
 static void warn_of_coarse_like(cli_run *cli, const voxelize_request *given,
                                 const voxelize_outcome *results) {
   const double few = 3;
@@ -53,7 +53,7 @@ static void warn_of_model(cli_run *cli, const voxelize_request *given, const vox
   cli_warn_lattice(cli, given->output, given->write.format, &results->space);
 }
 
-/** Written beside the grid are its confidence and coordinates: it is made as a whole. */
+/** Makes the grid as a whole, as its confidence and coordinates are made of it. */
 static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_outcome *results,
                        vxm_model *model) {
   double start = cli_clock();
@@ -132,7 +132,7 @@ static bool takes_octree(const voxelize_request *given, const voxelize_outcome *
          voxelize_is_sliced(given->write.format) && results->estimate.grid_bytes >= LARGE_GRID;
 }
 
-/** What a grid takes: rows are whole words. */
+/** The memory of a grid, whose rows are whole words. */
 static uint64_t bytes_of_bits(const vxm_space *space) {
   return (uint64_t)(space->dims[0] + 63) / 64 * 8 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
 }

@@ -73,8 +73,8 @@ int combine_read(cli_run *cli, combine_operand *out, const combine_request *give
 
 /* ---- Labels ---- */
 
-/** The numbers of labels by their names, the lowest of those that share one; those without a name are
- * nobody's. */
+/** An object with the number of each label name: the lowest where several labels share it. Labels without a
+ * name are left out. */
 static json_t *numbers_of(const vxm_field *field) {
   json_t *numbers = json_object();
   for (int64_t label = vxm_field_label_count(field); label > 0; label--)
@@ -132,7 +132,8 @@ static void tell_renumbered(const cli_run *cli, const json_t *renumbered) {
     cli_row(cli, "", "... and %zu more (-v shows all)", count - shown);
 }
 
-/** What is told of values beside their range. @param names a field with the table of labels */
+/** Completes the report of values with their labels, and ends the run. @param names a field with the table of
+ * labels */
 static int finish(cli_run *cli, const combine_request *given, const vxm_field *names, json_t *report,
                   const json_t *renumbered) {
   if (vxm_field_kind_of(names) == VXM_FIELD_LABELS) {

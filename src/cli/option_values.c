@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What stands behind an option: texts become numbers and choices. */
+/** The values of options: texts become numbers and choices. */
 #include "cli/cli.h"
 
 #include <errno.h>

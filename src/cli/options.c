@@ -71,7 +71,7 @@ static void print_option(const cli_option *option) {
   putchar('\n');
 }
 
-/** Whether a command has an option of its own by the name of a common one, which then stands back. */
+/** Whether a command has an option of its own by the name of a common one, which it replaces. */
 static bool is_replaced(const cli_command *command, const cli_option *common) {
   for (const cli_option *option = command->options; option->name; option++)
     if (strcmp(option->name, common->name) == 0)
@@ -190,7 +190,7 @@ static const cli_option *option_of(int key) {
   return known_options[i];
 }
 
-/** What may have been meant by a long option that is none; "" for one that is far from all. */
+/** Suggests options that are spelt like an unknown one; "" if there are none. */
 static const char *suggest_option(char text[CLI_LIST_MAX], const char *word) {
   const char *names[CLI_OPTIONS_MAX + 1];
   char typed[64];

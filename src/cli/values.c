@@ -95,7 +95,7 @@ int cli_bits_read(cli_run *cli, vxm_grid **out, const vxm_threshold_options *thr
   return CLI_DONE;
 }
 
-/** Numbers become bits in a grid, and standard input can be read but once. */
+/** By way of a grid where numbers become bits, and of standard input, which cannot be read again. */
 int cli_sparse_read(cli_run *cli, vxm_sparse **out, const vxm_threshold_options *threshold, const char *path,
                     const char *why) {
   vxm_status status = VXM_ERROR_NUMBERS;

@@ -93,7 +93,7 @@ static vxm_status fill(vxm_field *field, const vxm_raster *r, vxm_raster_source 
   return status;
 }
 
-/** A field of 64-bit floats of scaled numbers, which are those of 32 bits where they can be. */
+/** Replaces a field by its scaled numbers: 32-bit floats where these hold them, else 64-bit ones. */
 static vxm_status scale(vxm_field **field, const vxm_raster *r, vxm_error *error) {
   vxm_field *scaled, *raw = *field;
   vxm_status status =

@@ -74,7 +74,7 @@ static void warn_array(receipt *r, const vxm_sink_array *array) {
   vxm_place_warn(&r->warnings, array->known_place);
 }
 
-/** Where nothing arrives nothing is written to, so that a short file cannot take much memory. */
+/** Values are not touched before they arrive, so that a short file cannot take much memory. */
 static vxm_status take_array(void *payload, const vxm_sink_array *array, vxm_error *error) {
   receipt *r = payload;
   for (int a = 0; a < 3; a++) {

@@ -163,7 +163,7 @@ static bool is_alike(const stack *s, uint64_t directory) {
   return true;
 }
 
-/** Counts the pages. Directories of a sound file do not share bytes: a chain that goes back is found out. */
+/** Counts the pages. Directories of a sound file do not overlap, which ends a chain that runs in a circle. */
 static vxm_status count_pages(stack *s, vxm_error *error) {
   uint64_t seen = 0;
   for (uint64_t at = s->first; at != 0; at = next_directory(s, at)) {
