@@ -278,20 +278,6 @@ static json_t *digest_files(const json_t *paths, const json_t *options, const ba
   return result;
 }
 
-static bool say(int descriptor, const char *text) {
-  size_t left = strlen(text);
-  while (left > 0) {
-    ssize_t done = write(descriptor, text, left);
-    if (done < 0 && errno != EINTR)
-      return false;
-    if (done > 0) {
-      text += done;
-      left -= (size_t)done;
-    }
-  }
-  return true;
-}
-
 int batch_do_job(const char *request, int descriptor, void *payload) {
   json_t *job = json_loads(request, 0, NULL), *result;
   if (!job)
@@ -301,5 +287,5 @@ int batch_do_job(const char *request, int descriptor, void *payload) {
                  : make_outputs(job, batch_json_text(job, "root"));
   char *text = json_dumps(result, JSON_COMPACT | JSON_REAL_PRECISION(17));
   fflush(NULL);
-  return text && say(descriptor, text) ? 0 : 1;
+  return text && batch_write_all(descriptor, text, strlen(text)) ? 0 : 1;
 }
