@@ -48,12 +48,12 @@ vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_mode
   vxm_status status = check(&chosen, space, options, error);
   if (status != VXM_OK)
     return status;
-  vxm_face_labels labelling;
-  status = vxm_face_labels_create(&labelling, model->analysis.soup, chosen.by, error);
+  vxm_face_labels face_labels;
+  status = vxm_face_labels_create(&face_labels, model->analysis.soup, chosen.by, error);
   if (status == VXM_OK)
-    status =
-        vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, &results.made, model, space, &labelling, error);
-  vxm_face_labels_destroy(&labelling);
+    status = vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, &results.made, model, space, &face_labels,
+                            error);
+  vxm_face_labels_destroy(&face_labels);
   VXM_RESULTS_END(&results, status);
   return status;
 }

@@ -47,6 +47,8 @@ bool batch_fail_errno(batch_error *error, const char *format, ...) BATCH_PRINTF(
 
 /** Milliseconds since an arbitrary start. */
 double batch_clock_ms(void);
+/** Writes all of a text; false with errno. */
+bool batch_write_all(int descriptor, const char *text, size_t size);
 
 /** A text of an object, or NULL. */
 const char *batch_json_text(const json_t *object, const char *key);

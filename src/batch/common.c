@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 const char *const batch_status_names[BATCH_STATUSES + 1] = {
     "pending", "ok",  "degraded", "duplicate",   "unreadable", "failed",
@@ -43,6 +44,19 @@ double batch_clock_ms(void) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
   return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+bool batch_write_all(int descriptor, const char *text, size_t size) {
+  while (size > 0) {
+    ssize_t done = write(descriptor, text, size);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done <= 0)
+      return false;
+    text += done;
+    size -= (size_t)done;
+  }
+  return true;
 }
 
 const char *batch_json_text(const json_t *object, const char *key) {

@@ -110,19 +110,6 @@ bool batch_journal_open(batch_journal *out, const char *path, int folder, batch_
   return false;
 }
 
-static bool write_all(int descriptor, const char *text, size_t size) {
-  while (size > 0) {
-    ssize_t done = write(descriptor, text, size);
-    if (done < 0 && errno == EINTR)
-      continue;
-    if (done <= 0)
-      return false;
-    text += done;
-    size -= (size_t)done;
-  }
-  return true;
-}
-
 /** "{...}" with the sum put in front, as a line to be freed. */
 static char *line_of(const json_t *record, size_t *length) {
   char *text = json_dumps(record, JSON_COMPACT), *line = NULL, sum[SUM + 1];
@@ -143,7 +130,7 @@ bool batch_journal_add(batch_journal *journal, json_t *record, batch_error *erro
   if (!line)
     return batch_fail(error, "out of memory for the journal: free some");
   off_t before = lseek(journal->descriptor, 0, SEEK_END);
-  bool good = write_all(journal->descriptor, line, length);
+  bool good = batch_write_all(journal->descriptor, line, length);
   if (!good) {
     batch_fail_errno(error, "%s: cannot write", journal->path);
     if (before < 0 ||

@@ -4,7 +4,7 @@
 #define VXM_CLI_AUGMENT_H
 
 #include "cli/engine.h"
-#include "cli/repair_common.h"
+#include "cli/field.h"
 
 typedef struct augment_request {
   const char *input, *output, *format;
@@ -12,8 +12,7 @@ typedef struct augment_request {
   const char *rotations; /**< file of a list, or NULL */
   int64_t count, first;  /**< count 0 = a stream without end */
   vxm_variant variant;   /**< model and epoch */
-  bool no_repair, repair_options, noise;
-  bool surface, thin;
+  bool no_repair;
   bool force; /**< variants that are there may be replaced */
   cli_engine engine;
   vxm_voxel_format voxels; /**< of a stream */

@@ -29,7 +29,7 @@ static void name_file(char *out, const augment_request *given, int64_t made, con
            behind);
 }
 
-/** The number of the variant of which a file is, by its name without its folder; -1 = of none. */
+/** The number of the variant that a file name, without its folder, stands for; -1 = none. */
 static int64_t number_of(const char *name, const char *format) {
   char made[64];
   if (!isdigit((unsigned char)*name))
@@ -45,7 +45,7 @@ static bool is_wanted(const augment_request *given, int64_t number) {
   return number >= given->first && number - given->first < given->count;
 }
 
-/** The number of a variant of any format; -1 = of none. */
+/** The same, whatever the format. */
 static int64_t number_of_any(const char *name) {
   int64_t number = -1;
   for (int f = 0; number < 0 && augment_file_formats[f]; f++)
@@ -105,8 +105,8 @@ int augment_check_former(cli_run *cli, const augment_request *given) {
                   : CLI_END;
 }
 
-/** What a longer run, or one in another format, has left would pass for variants of this one. Only once all
- * of these are there, so that nothing is lost if they are not. */
+/** Removes variants of a longer former run, or in another format, which would pass for some of this one.
+ * Called once all of this run are there, so that nothing is lost if it fails. */
 static void remove_former(const augment_request *given) {
   char path[PATH_SIZE + NAME_MAX];
   DIR *list = opendir(given->output);

@@ -73,7 +73,7 @@ static bool write_records(const augment_stream *s, size_t count) {
   return true;
 }
 
-/** A reader that has enough closes its end; of a stream without one that is how it ends. */
+/** After a failed write. A stream without end is to end so: its reader has enough and closes the pipe. */
 static int end_of_writing(cli_run *cli, augment_stream *s) {
   int reason = errno;
   s->is_left = reason == EPIPE && s->is_endless;

@@ -17,26 +17,27 @@ static bool has_surfaces(int baseline) {
 
 int cli_baseline_check(cli_run *cli, const voxelize_request *given) {
   const vxm_voxelize_options *options = &given->voxelize;
-  if (!given->baseline_name)
+  if (given->baseline < 0)
     return CLI_END;
   if (given->sparse || given->coords || given->confidence || given->dry_run ||
       cli_field_wanted(&given->field))
     return cli_usage(cli,
                      "--baseline writes a grid of voxels and nothing else; leave out --sparse, --coords, "
                      "--confidence, --coverage, --distance, --labels, --color and --dry-run");
-  if (given->vote || given->thin || options->method != VXM_METHOD_VOTE ||
+  if (cli_is_given(cli, "vote") || cli_is_given(cli, "thin") || options->method != VXM_METHOD_VOTE ||
       options->split_mode != VXM_SPLIT_MODE_AUTO || options->cavities != VXM_CAVITIES_AUTO)
     return cli_usage(cli,
                      "--baseline %s is a method of its own; leave out --method, --vote, --parts, "
                      "--cavities and --thin",
-                     given->baseline_name);
+                     cli_baseline_names[given->baseline]);
   if (options->mode != VXM_MODE_SOLID && (!has_surfaces(given->baseline) || options->mode == VXM_MODE_BOTH ||
                                           options->surface > VXM_SURFACE_THIN))
     return cli_usage(cli,
                      "--baseline simple, specialized and sorted have --mode surface, conservative or thin; "
                      "of others leave out --mode");
   if (given->engine.name && given->baseline < FAIEGHI)
-    return cli_usage(cli, "--baseline %s is done by the CPU; leave out --engine", given->baseline_name);
+    return cli_usage(cli, "--baseline %s is done by the CPU; leave out --engine",
+                     cli_baseline_names[given->baseline]);
   if (!given->engine.name && given->baseline >= FAIEGHI)
     return cli_usage(cli, "--baseline faieghi is a program for OpenCL; add --engine opencl");
   return CLI_END;
@@ -161,25 +162,19 @@ static vxm_status make_published(vxm_grid **out, cli_run *cli, voxelize_request 
 }
 
 int cli_baseline_write(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   vxm_grid *grid = NULL;
-  options.format = given->format;
-  options.keep_polygons = given->keep_polygons;
-  options.keep_contacts = given->keep_contacts;
-  options.blocks = given->style.blocks;
-  options.up = given->style.up;
   double start = cli_clock();
   vxm_status status = given->baseline >= FAIEGHI ? make_published(&grid, cli, given, results)
                                                  : make_baseline(&grid, cli, given, results);
   double made = cli_clock();
   if (status == VXM_OK)
-    status = vxm_grid_write(grid, given->output, &options, &cli->error);
+    status = vxm_grid_write(grid, given->output, &given->write, &cli->error);
   results->voxelize_ms = made - start;
   results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     results->voxelize.voxels = vxm_grid_count(grid);
     results->voxelize.hash = vxm_grid_hash(grid);
-    cli_warn_lattice(cli, given->output, given->format, &results->space);
+    cli_warn_lattice(cli, given->output, given->write.format, &results->space);
   }
   vxm_grid_destroy(grid);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);

@@ -12,8 +12,8 @@
 
 /* ---- Results ---- */
 
-/** A text with other words in one place, to be freed. */
-static char *reworded(const char *text, const char *words, const char *others) {
+/** A text in which `words`, where they stand first, are replaced by others; to be freed. */
+static char *with_words_replaced(const char *text, const char *words, const char *others) {
   const char *found = strstr(text, words);
   char *out = NULL;
   if (!found || asprintf(&out, "%.*s%s%s", (int)(found - text), text, others, found + strlen(words)) < 0)
@@ -27,19 +27,20 @@ static char *of_item(const char *text, const json_t *job) {
   static const char *const misleading[] = {
       "was not opened: a mesh that is not a file has no folder (--external any opens it)",
       "was not opened: there is no such file"};
-  char *out = reworded(text, "<stdin>", batch_json_text(job, "item"));
+  char *out = with_words_replaced(text, "<stdin>", batch_json_text(job, "item"));
   for (int m = 0; m < 2 && out && batch_json_text(job, "member"); m++) {
-    char *line = reworded(out, misleading[m],
-                          "was not opened: a mesh in an archive is read without the files beside it; unpack "
-                          "the archive, and give its folder");
+    char *line = with_words_replaced(
+        out, misleading[m],
+        "was not opened: a mesh in an archive is read without the files beside it; unpack "
+        "the archive, and give its folder");
     free(out);
     out = line;
   }
   return out;
 }
 
-/** What does not depend on the hour and the machine: reports of the same mesh are the same. */
-static json_t *lasting(const json_t *report) {
+/** A report without what depends on the run or the machine, so that those of the same mesh are equal. */
+static json_t *without_run_details(const json_t *report) {
   static const char *const passing[] = {"input", "output", "time_ms", "peak_bytes", "estimate", "warnings"};
   json_t *kept = json_copy((json_t *)(uintptr_t)report);
   for (size_t k = 0; kept && k < sizeof passing / sizeof *passing; k++)
@@ -49,7 +50,8 @@ static json_t *lasting(const json_t *report) {
 
 /** Of passes of a repair only those that changed something are told in a journal. */
 static json_t *short_report(const json_t *report) {
-  json_t *kept = lasting(report), *passes = json_object_get(kept, "repair"), *pass, *counts = json_object();
+  json_t *kept = without_run_details(report), *passes = json_object_get(kept, "repair"), *pass,
+         *counts = json_object();
   size_t p;
   json_array_foreach(passes, p, pass) if (json_integer_value(json_object_get(pass, "count")) > 0)
       json_object_set(counts, batch_json_text(pass, "pass") ? batch_json_text(pass, "pass") : "?",
@@ -149,7 +151,7 @@ static bool do_command(const making *m, const json_t *command) {
   int status = cli_capture_command(words[0], count, words, &capture);
   if (status == CLI_DONE && capture.report) {
     json_object_set_new(result, words[0], short_report(capture.report));
-    json_object_set_new(m->reports, words[0], lasting(capture.report));
+    json_object_set_new(m->reports, words[0], without_run_details(capture.report));
     add_warnings(result, capture.report, job);
   } else
     tell_failure(result, &capture, words[0], member ? "<stdin>" : batch_json_text(job, "input"), job);
@@ -204,7 +206,7 @@ static bool write_report(json_t *result, const json_t *job, json_t *reports, con
 
 /* ---- A job ---- */
 
-/** Behind the work, as the digest of the mesh. */
+/** Called after the work, like digest_input: by then it is known which files were read. */
 static void tell_companions(json_t *result, const json_t *job, const json_t *names) {
   json_t *companions =
       json_array_size(names) > 0 ? batch_companions_describe(batch_json_text(job, "input"), names) : NULL;
@@ -276,20 +278,6 @@ static json_t *digest_files(const json_t *paths, const json_t *options, const ba
   return result;
 }
 
-static bool say(int descriptor, const char *text) {
-  size_t left = strlen(text);
-  while (left > 0) {
-    ssize_t done = write(descriptor, text, left);
-    if (done < 0 && errno != EINTR)
-      return false;
-    if (done > 0) {
-      text += done;
-      left -= (size_t)done;
-    }
-  }
-  return true;
-}
-
 int batch_do_job(const char *request, int descriptor, void *payload) {
   json_t *job = json_loads(request, 0, NULL), *result;
   if (!job)
@@ -299,5 +287,5 @@ int batch_do_job(const char *request, int descriptor, void *payload) {
                  : make_outputs(job, batch_json_text(job, "root"));
   char *text = json_dumps(result, JSON_COMPACT | JSON_REAL_PRECISION(17));
   fflush(NULL);
-  return text && say(descriptor, text) ? 0 : 1;
+  return text && batch_write_all(descriptor, text, strlen(text)) ? 0 : 1;
 }

@@ -94,7 +94,7 @@ enum { SQLITE, PARQUET, WEBDATASET, ZARR };
 
 static const char *const kinds[] = {"sqlite", "parquet", "webdataset", "zarr", NULL};
 
-/** CLI_STOP after a line where an option is for another kind. */
+/** CLI_STOP after a line if an option is for another kind of export. */
 static int check_options(cli_run *cli, const batch_words *options, int kind) {
   static const struct {
     const char *name;

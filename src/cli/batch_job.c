@@ -25,8 +25,8 @@ static const char *format_in(const char *options, const char *usual, char text[1
   return text;
 }
 
-/** Name of a product below the folder of outputs, to be freed. A mesh that stands alone needs no telling
- * word. */
+/** Name of a product below the folder of outputs, to be freed. Where the only product is a mesh, its name has
+ * no ".repaired" or ".remeshed". */
 static char *product_name(const batch_request *given, batch_product product, const batch_item *item) {
   char format[16], *name = NULL;
   const char *options = given->products[product];
@@ -291,7 +291,7 @@ json_t *batch_make_settings(const batch_request *given) {
   return settings;
 }
 
-/** The name that tools which unpack one member on standard output take, or NULL. */
+/** The command that unpacks one member of an archive to standard output. */
 static const char *unpacker_of(const char *archive) {
   const char *dot = strrchr(archive, '.');
   return dot && strcasecmp(dot, ".zip") == 0 ? "unzip -p" : "bsdtar -xOf";

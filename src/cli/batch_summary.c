@@ -43,8 +43,8 @@ static bool draw(const batch_item *item, const char *path, const char *picture, 
   return good;
 }
 
-/** Whether what is there, written last of all, tells the same already. */
-static bool is_told(const char *output, const json_t *summary) {
+/** Whether the summary.json that is there, which is written last, is this one already. */
+static bool is_up_to_date(const char *output, const json_t *summary) {
   char *path = NULL;
   json_t *there = asprintf(&path, "%s/summary.json", output) >= 0 ? json_load_file(path, 0, NULL) : NULL;
   bool same = there && json_equal(json_object_get(there, "counts"), json_object_get(summary, "counts")) &&
@@ -62,7 +62,7 @@ bool batch_tell(json_t **summary, const batch_maker *maker, batch_error *error) 
   if (!batch_state_read(&state, maker->output, error))
     return false;
   *summary = batch_summary_json(&state);
-  bool good = state.complete < state.shards || is_told(maker->output, *summary) ||
+  bool good = state.complete < state.shards || is_up_to_date(maker->output, *summary) ||
               batch_summary_write(&state, maker->output, &hooks, error);
   batch_state_free(&state);
   return good;

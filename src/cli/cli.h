@@ -18,33 +18,33 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
 
 #define CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
 
-/** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
-enum {
-  CLI_KEY_COMMON = 256,
-  CLI_KEY_THRESHOLD = 500,
-  CLI_KEY_BELOW,
-  CLI_KEY_ENGINE = 505,
-  CLI_KEY_DEVICE,
-  CLI_KEY_CL_METHOD,
-  CLI_KEY_GL_METHOD,
-  CLI_KEY_GL_AXIS,
-  CLI_KEY_GL_DISPLACE,
-  CLI_KEY_DEFLECTION,
-  CLI_KEY_EXTERNAL,
-  CLI_KEY_COMMAND
-};
-
-/** What cli_next_option returns beside an option's key, and functions that read arguments return. */
+/** What functions that read options and their values return. */
 enum { CLI_END = 0, CLI_STOP = -1 };
 
-typedef struct cli_option {
-  int key;              /**< the option's letter, or a number from CLI_KEY_COMMAND on */
+typedef struct cli_run cli_run;
+typedef struct cli_option cli_option;
+
+/** Reads the value of an option into a member of the request; CLI_STOP after a line about wrong usage. */
+typedef int cli_reader(cli_run *cli, const cli_option *option, const char *value, void *member);
+
+/** Where the value of an option goes. */
+typedef struct cli_target {
+  cli_reader *read; /**< NULL = nowhere: cli_is_given says that the option was there */
+  size_t at, size;  /**< of the member in the request of the command */
+  bool is_of_run;   /**< or in cli_run */
+  const char *const *choices;
+  int64_t min, max; /**< of a number; min is what the first choice stands for, too */
+} cli_target;
+
+/** A row of a command's table, which serves getopt, the help and the reading; option_tables.h has the macros
+ * for the targets. */
+struct cli_option {
+  char letter;          /**< 0 = none */
   const char *name;     /**< long name; NULL ends a list */
   const char *argument; /**< what it takes, as shown in the help; NULL = nothing */
   const char *help;     /**< a line, or several separated by '\n' */
-} cli_option;
-
-typedef struct cli_run cli_run;
+  cli_target to;
+};
 
 typedef struct cli_command {
   const char *name;
@@ -108,7 +108,9 @@ struct cli_run {
   int argument_count;
   int status; /**< exit status once something has returned CLI_STOP */
 
-  bool is_reading; /**< options, that is */
+  bool is_reading;                          /**< options, that is */
+  const cli_option *given[CLI_OPTIONS_MAX]; /**< those of the command, in the order in which they came last */
+  int given_count;
   bool json, quiet, verbose, strict;
   const char *report;
   const char *progress;
@@ -132,11 +134,16 @@ struct cli_run {
 
 /* ---- options.c: reading the command line ---- */
 
-/**
- * Returns the key of the next option of the command, its argument in *value; CLI_END after the last, then
- * cli->arguments are set; CLI_STOP when the program is to end with cli->status (help shown, or wrong usage).
- */
-int cli_next_option(cli_run *cli, const char **value);
+/** Reads the options into the request, as the command's table says, and sets cli->arguments. CLI_STOP when
+ * the program is to end with cli->status: help was shown, or the usage is wrong. */
+int cli_read_options(cli_run *cli, void *request);
+/** The same an option at a time, for cli_take_option; *option is NULL after the last. */
+int cli_next_option(cli_run *cli, const cli_option **option, const char **value);
+int cli_take_option(cli_run *cli, const cli_option *option, const char *value, void *request);
+/** Whether an option of the command was given. */
+bool cli_is_given(const cli_run *cli, const char *name);
+/** Which of these was given last, or NULL; NULL ends the names. */
+const char *cli_last_given(const cli_run *cli, const char *const *names);
 /** Prints one line about wrong usage, sets cli->status and returns CLI_STOP. */
 int cli_usage(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 void cli_help(const cli_command *command);
@@ -151,6 +158,13 @@ void cli_help_table(const cli_command *command, bool is_all);
  * wrong name fails before the work; false after a failure that has been printed.
  */
 bool cli_start(cli_run *cli);
+
+/* ---- option_values.c ---- */
+
+/* Readers of the tables: of one of the choices, a number from min to max, bytes, ... */
+cli_reader cli_take_flag, cli_take_text, cli_take_choice, cli_take_number, cli_take_size, cli_take_deflection;
+/** The choices of options that several commands have; NULL ends each list. */
+extern const char *const cli_axes[], *const cli_external_files[], *const cli_polygon_kinds[];
 
 /* Strict readings: the whole text must be the value, in the C locale; false if it is not. */
 bool cli_read_integer(int64_t *out, const char *text, int64_t low, int64_t high);
@@ -299,21 +313,16 @@ void cli_mesh_extensions_free(const char **extensions);
 /* ---- output_style.c ---- */
 
 /** The one rule for what is there already: CLI_STOP if a mesh would be written in place of a file, which may
- * be the mesh that all else is made of. Grids, pictures and reports replace what was there. */
-int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);
-/** How blocks and meshes stand: of vxm_grid_write_options. */
-typedef struct cli_style {
-  const char *blocks;
-  int up;
-} cli_style;
-/** Takes over the argument of --up: CLI_END or CLI_STOP. */
-int cli_read_up(cli_run *cli, cli_style *style, const char *value);
-/** CLI_STOP if the format has no use for what was given. */
-int cli_check_style(cli_run *cli, const cli_style *style, const char *format);
-/** CLI_STOP if the format is not one of meshes that heed --polygons keep and --no-manifold. */
-int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const char *format);
-/** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
-int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
+ * be the mesh that all else is made of, without --force. Grids, pictures and reports replace what was there.
+ */
+int cli_check_surface_file(cli_run *cli, const char *path, const char *format);
+/** CLI_STOP if the format has no use for --blocks, --up, --polygons keep or --no-manifold. */
+int cli_check_style(cli_run *cli, const vxm_grid_write_options *write);
+/** All checks of a grid's -o, after cli_reads; finds the format, one of these. */
+int cli_check_grid_output(cli_run *cli, const char *path, vxm_grid_write_options *write, cli_formats formats,
+                          bool may_be_labels);
+/** The same of --polygons keep alone. */
+int cli_check_polygons(cli_run *cli, bool keep_polygons, const char *format);
 
 /* ---- progress.c ---- */
 

@@ -143,7 +143,7 @@ static int run_batch(cli_run *cli, batch_maker *maker, batch_zygote *zygote, bat
   return finish(cli, maker, manifest, &tally, outcome, &error);
 }
 
-/** Two pipes and a socket a child, and what else there is. */
+/** As many open files as the system lets us have: each child takes two pipes and a socket. */
 static void allow_descriptors(void) {
   struct rlimit limit;
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
@@ -199,8 +199,8 @@ static int check(cli_run *cli, const batch_request *given) {
   return *word == 's' ? batch_status_command(cli, folder) : batch_verify_command(cli, folder);
 }
 
-/** What was wanted, once the command line is read. */
-static int do_wish(cli_run *cli, batch_request *given) {
+/** Runs the batch, or tells of one, as the command line says. */
+static int run_or_check(cli_run *cli, batch_request *given) {
   if (cli->argument_count == 2 && is_check(cli->arguments[0]))
     return check(cli, given);
   if (given->to || given->export_options.count > 0)
@@ -230,7 +230,7 @@ static int run(cli_run *cli) {
                          .time_limit = 300,
                          .file_limit = UINT64_C(64) << 30,
                          .pictures = 48};
-  int status = batch_read_arguments(cli, &given) == CLI_STOP ? cli->status : do_wish(cli, &given);
+  int status = batch_read_arguments(cli, &given) == CLI_STOP ? cli->status : run_or_check(cli, &given);
   batch_words_free(&given.grid_options);
   batch_words_free(&given.export_options);
   return status;

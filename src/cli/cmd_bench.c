@@ -7,41 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  KEY_LIST_THREADS = CLI_KEY_COMMAND,
-  KEY_PHASES,
-  KEY_ENGINE,
-  KEY_AUGMENT,
-  KEY_DISPLACE,
-  KEY_CPU,
-  KEY_TIME,
-  KEY_PLOT
-};
-
-static const cli_option known_options[] = {
-    {'r', "resolution", "LIST",
-     "voxels along each axis, such as 64,256 [64,128,256,512,1024; with\n"
-     "--augment 32,64]"},
-    {KEY_LIST_THREADS, "threads", "LIST",
-     "numbers of threads, such as 1,2, each 1 to 256 [1 and one per processor]"},
-    {KEY_PHASES, "phases", "LIST",
-     "what to measure, out of the phases below; named here, a phase is measured\n"
-     "however slow it is; 'solid' is all that begin with solid_ [all, but what takes\n"
-     "over two seconds is left out, and what needs OpenCL without --engine opencl]"},
-    {KEY_ENGINE, "engine", "LIST",
-     "what computes the grids, such as cpu,opencl,opencl/tiles: as in 'voxmend voxelize',\n"
-     "and behind a '/' the method; others are compared with the first [cpu]"},
-    {KEY_AUGMENT, "augment", NULL, "measure making variants for training instead: the augment_ phases below"},
-    {KEY_DISPLACE, "displace", "F",
-     "by how much the vertices of variants are displaced, as in augment [0.01]"},
-    {KEY_CPU, "cpu", "LEVEL",
-     "use the vectors of such processors and no higher: plain (SSE2), avx2 or avx512; what\n"
-     "is made is the same [the highest that this processor has]"},
-    {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
-    {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
-    CLI_OPTIONS_READ,
-    {0, NULL, NULL, NULL}};
-
 /* ---- Options ---- */
 
 enum { ITEM_SIZE = 32 };
@@ -89,7 +54,8 @@ static bool choose_group(bench_plan *plan, const char *group) {
   return found;
 }
 
-static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
+static int take_phases(cli_run *cli, const cli_option *option, const char *text, void *member) {
+  bench_plan *plan = member;
   char item[ITEM_SIZE];
   const char *names[BENCH_PHASES_MAX + 1] = {NULL};
   for (int i = 0; bench_phases[i].name; i++)
@@ -100,7 +66,7 @@ static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
     int phase;
     if (choose_group(plan, item))
       continue;
-    if (cli_choose(cli, &phase, "phases", item, names) == CLI_STOP)
+    if (cli_choose(cli, &phase, option->name, item, names) == CLI_STOP)
       return CLI_STOP;
     plan->chosen[phase] = true;
   }
@@ -125,61 +91,88 @@ static int read_method(cli_run *cli, vxm_engine_options *options, const char *na
   return result;
 }
 
-static int read_engines(cli_run *cli, bench_plan *plan, const char *text) {
+static int take_engines(cli_run *cli, const cli_option *option, const char *text, void *member) {
+  bench_plan *plan = member;
   char item[ITEM_SIZE];
   int result = CLI_END;
   for (plan->engine_count = 0; result == CLI_END && next_item(item, &text); plan->engine_count++) {
     if (plan->engine_count == BENCH_ENGINES_MAX)
-      return cli_usage(cli, "--engine names more than %d engines", BENCH_ENGINES_MAX);
+      return cli_usage(cli, "--%s names more than %d engines", option->name, BENCH_ENGINES_MAX);
     snprintf(plan->engines[plan->engine_count], sizeof plan->engines[0], "%s", item);
     result = read_method(cli, &plan->engine_options[plan->engine_count], item);
   }
   return result;
 }
 
-static int read_cpu(cli_run *cli, const char *text) {
+static int take_cpu(cli_run *cli, const cli_option *option, const char *text, void *member) {
+  (void)member;
   int level;
-  if (cli_choose(cli, &level, "cpu", text, bench_cpu_names) == CLI_STOP)
+  if (cli_choose(cli, &level, option->name, text, bench_cpu_names) == CLI_STOP)
     return CLI_STOP;
   if (vxm_cpu_limit((vxm_cpu_level)level, &cli->error) != VXM_OK)
-    return cli_usage(cli, "--cpu '%s': %s", text, cli->error.file);
+    return cli_usage(cli, "--%s '%s': %s", option->name, text, cli->error.file);
   return CLI_END;
 }
 
-static int read_option(cli_run *cli, bench_plan *plan, int key, const char *value) {
-  int64_t time;
-  switch (key) {
-  case 'r':
-    if (!read_list(plan->resolutions, &plan->resolution_count, value, 1 << 20))
-      return cli_usage(cli, "-r '%s' is not a list such as 64,256 of numbers from 1 to 1048576", value);
+static int take_resolutions(cli_run *cli, const cli_option *option, const char *text, void *member) {
+  bench_plan *plan = member;
+  (void)option;
+  if (read_list(plan->resolutions, &plan->resolution_count, text, 1 << 20))
     return CLI_END;
-  case KEY_LIST_THREADS:
-    if (!read_list(plan->threads, &plan->thread_count, value, 256))
-      return cli_usage(cli, "--threads '%s' is not a list such as 1,2 of numbers from 1 to 256", value);
-    return CLI_END;
-  case KEY_PHASES:
-    return read_phases(cli, plan, value);
-  case KEY_ENGINE:
-    return read_engines(cli, plan, value);
-  case KEY_AUGMENT:
-    plan->augment = true;
-    return CLI_END;
-  case KEY_DISPLACE:
-    if (!cli_read_number(&plan->displace, value) || plan->displace < 0 || plan->displace > 0.4)
-      return cli_usage(cli, "--displace '%s' is not a number from 0 to 0.4", value);
-    return CLI_END;
-  case KEY_CPU:
-    return read_cpu(cli, value);
-  case KEY_TIME:
-    if (!cli_read_integer(&time, value, 0, 3600000))
-      return cli_usage(cli, "--time '%s' is not a number of milliseconds from 0 to 3600000", value);
-    plan->time_ms = (double)time;
-    return CLI_END;
-  default:
-    plan->plot = value;
-    return CLI_END;
-  }
+  return cli_usage(cli, "-r '%s' is not a list such as 64,256 of numbers from 1 to 1048576", text);
 }
+
+static int take_threads(cli_run *cli, const cli_option *option, const char *text, void *member) {
+  bench_plan *plan = member;
+  if (read_list(plan->threads, &plan->thread_count, text, 256))
+    return CLI_END;
+  return cli_usage(cli, "--%s '%s' is not a list such as 1,2 of numbers from 1 to 256", option->name, text);
+}
+
+static int take_displace(cli_run *cli, const cli_option *option, const char *text, void *member) {
+  double *displace = member;
+  if (cli_read_number(displace, text) && *displace >= 0 && *displace <= 0.4)
+    return CLI_END;
+  return cli_usage(cli, "--%s '%s' is not a number from 0 to 0.4", option->name, text);
+}
+
+static int take_time(cli_run *cli, const cli_option *option, const char *text, void *member) {
+  int64_t time;
+  if (!cli_read_integer(&time, text, 0, 3600000))
+    return cli_usage(cli, "--%s '%s' is not a number of milliseconds from 0 to 3600000", option->name, text);
+  *(double *)member = (double)time;
+  return CLI_END;
+}
+
+static const cli_option known_options[] = {
+    {'r', "resolution", "LIST",
+     "voxels along each axis, such as 64,256 [64,128,256,512,1024; with\n"
+     "--augment 32,64]",
+     CLI_VALUES(take_resolutions)},
+    {0, "threads", "LIST", "numbers of threads, such as 1,2, each 1 to 256 [1 and one per processor]",
+     CLI_VALUES(take_threads)},
+    {0, "phases", "LIST",
+     "what to measure, out of the phases below; named here, a phase is measured\n"
+     "however slow it is; 'solid' is all that begin with solid_ [all, but what takes\n"
+     "over two seconds is left out, and what needs OpenCL without --engine opencl]",
+     CLI_VALUES(take_phases)},
+    {0, "engine", "LIST",
+     "what computes the grids, such as cpu,opencl,opencl/tiles: as in 'voxmend voxelize',\n"
+     "and behind a '/' the method; others are compared with the first [cpu]",
+     CLI_VALUES(take_engines)},
+    {0, "augment", NULL, "measure making variants for training instead: the augment_ phases below",
+     CLI_FLAG(bench_plan, augment)},
+    {0, "displace", "F", "by how much the vertices of variants are displaced, as in augment [0.01]",
+     CLI_VALUE(take_displace, bench_plan, displace)},
+    {0, "cpu", "LEVEL",
+     "use the vectors of such processors and no higher: plain (SSE2), avx2 or avx512; what\n"
+     "is made is the same [the highest that this processor has]",
+     CLI_VALUES(take_cpu)},
+    {0, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]",
+     CLI_VALUE(take_time, bench_plan, time_ms)},
+    {0, "plot", "FILE.svg", "draw the times over the resolution", CLI_TEXT(bench_plan, plot)},
+    CLI_OPTIONS_READ,
+    CLI_OPTIONS_END};
 
 /** Whether any phase that depends on the resolution is chosen. */
 static bool has_grids(const bench_plan *plan) {
@@ -206,13 +199,10 @@ static bool is_usual(const bench_plan *plan, const bench_phase *phase) {
 }
 
 static int read_arguments(cli_run *cli, bench_plan *plan) {
-  const char *value;
-  int key;
   for (int i = 0; bench_phases[i].name; i++)
     plan->chosen[i] = true;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == CLI_STOP || read_option(cli, plan, key, value) == CLI_STOP)
-      return CLI_STOP;
+  if (cli_read_options(cli, plan) == CLI_STOP)
+    return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   plan->path = cli->arguments[0];

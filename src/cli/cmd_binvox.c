@@ -307,7 +307,7 @@ static int run(cli_run *cli) {
   return status;
 }
 
-static const cli_option no_options[] = {{0, NULL, NULL, NULL}};
+static const cli_option no_options[] = {CLI_OPTIONS_END};
 
 const cli_command cli_command_binvox = {
     .name = "binvox",

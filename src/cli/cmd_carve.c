@@ -7,31 +7,33 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_SPARSE };
+typedef struct request {
+  const char *tool, *path, *output;
+  bool sparse;
+  vxm_threshold_options threshold;
+  vxm_grid_write_options write;
+} request;
 
 static const cli_option known_options[] = {
-    {'t', "tool", "MESH", "the tool, in the model units of the grid, about its origin"},
+    {'t', "tool", "MESH", "the tool, in the model units of the grid, about its origin",
+     CLI_TEXT(request, tool)},
     {'p', "path", "FILE.csv",
      "where the tool's origin goes, a position in each line: x,y,z; or x,y,z and a\n"
      "quaternion qw,qx,qy,qz; or the 12 numbers of a 3 x 4 matrix, row after row. An\n"
      "empty line lifts the tool: to the next position nothing is cut on the way;\n"
-     "'-' is standard input, whose lines are cut as they come"},
-    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
-    {KEY_SPARSE, "sparse", NULL,
+     "'-' is standard input, whose lines are cut as they come",
+     CLI_TEXT(request, path)},
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(request, output)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, write.format)},
+    {0, "sparse", NULL,
      "cut an octree, whose memory follows the surface and the path [where the output\n"
-     "is .octree]"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_THRESHOLD,
+     "is .octree]",
+     CLI_FLAG(request, sparse)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_SURFACE(request),
+    CLI_OPTIONS_THRESHOLD(request),
     CLI_OPTIONS_READ,
-    {0, NULL, NULL, NULL}};
-
-typedef struct request {
-  const char *tool, *path, *output, *format;
-  bool force, sparse, keep_polygons, keep_contacts;
-  vxm_threshold_options threshold;
-} request;
+    CLI_OPTIONS_END};
 
 typedef struct outcome {
   cli_input tool;
@@ -42,49 +44,18 @@ typedef struct outcome {
   double carve_ms; /**< without the time for reading the path */
 } outcome;
 
-static int read_options(cli_run *cli, request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == 'o')
-      out->output = value;
-    else if (key == 't')
-      out->tool = value;
-    else if (key == 'p')
-      out->path = value;
-    else if (key == KEY_FORMAT)
-      out->format = value;
-    else if (key == KEY_FORCE)
-      out->force = true;
-    else if (key == KEY_SPARSE)
-      out->sparse = true;
-    else if (key == KEY_CONTACTS)
-      out->keep_contacts = true;
-    else if (key == KEY_POLYGONS) {
-      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
-      return CLI_STOP;
-  return CLI_END;
-}
-
 static int check(cli_run *cli, request *out) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   if (!out->tool || !out->path)
     return cli_usage(cli, "%s is missing", out->tool ? "-p PATH.csv" : "-t TOOL");
-  cli_formats formats = cli_formats_with(VXM_FORMAT_BITS);
-  out->format = cli_output_format(cli, out->output, out->format, formats.name);
-  if (!out->format)
-    return CLI_STOP;
   cli_reads(cli, out->tool);
   cli_reads(cli, out->path);
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format, false));
-  if (cli_check_names(cli) == CLI_STOP ||
-      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
+  if (cli_check_grid_output(cli, out->output, &out->write, cli_formats_with(VXM_FORMAT_BITS), false) ==
+      CLI_STOP)
     return CLI_STOP;
-  out->sparse |= strcmp(out->format, "octree") == 0;
-  return cli_check_surface_file(cli, out->output, out->format, out->force);
+  out->sparse |= strcmp(out->write.format, "octree") == 0;
+  return CLI_END;
 }
 
 /* ---- Reading ---- */
@@ -116,7 +87,7 @@ static int step(cli_run *cli, outcome *made, vxm_carver *carver, const cli_toolp
   return CLI_DONE;
 }
 
-static int go(cli_run *cli, outcome *made, vxm_carver *carver, cli_toolpath *toolpath) {
+static int follow_path(cli_run *cli, outcome *made, vxm_carver *carver, cli_toolpath *toolpath) {
   for (;;) {
     double pose[12];
     bool is_lifted, is_end;
@@ -149,7 +120,7 @@ static int carve(cli_run *cli, outcome *made, const request *given) {
   int status = created == VXM_OK ? cli_toolpath_open(cli, &toolpath, given->path) : cli_fail(cli);
   made->before = made->sparse ? vxm_sparse_count(made->sparse) : vxm_grid_count(made->grid);
   if (status == CLI_DONE)
-    status = go(cli, made, carver, &toolpath);
+    status = follow_path(cli, made, carver, &toolpath);
   if (status == CLI_DONE && made->steps == 0)
     status = cli_fail_text(cli, "%s: there is no position in it", toolpath.name);
   if (status == CLI_DONE && made->sparse)
@@ -192,18 +163,14 @@ static json_t *make_report(const cli_run *cli, const request *given, outcome *ma
   return report;
 }
 
-static int write_rest(cli_run *cli, const request *given, outcome *made) {
-  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
-  write.format = given->format;
-  write.keep_polygons = given->keep_polygons;
-  write.keep_contacts = given->keep_contacts;
-  vxm_status status = made->sparse ? vxm_sparse_write(made->sparse, given->output, &write, &cli->error)
-                                   : vxm_grid_write(made->grid, given->output, &write, &cli->error);
+static int write_result(cli_run *cli, const request *given, outcome *made) {
+  vxm_status status = made->sparse ? vxm_sparse_write(made->sparse, given->output, &given->write, &cli->error)
+                                   : vxm_grid_write(made->grid, given->output, &given->write, &cli->error);
   if (status != VXM_OK)
     return cli_fail(cli);
   uint64_t hash = made->sparse ? vxm_sparse_hash(made->sparse) : vxm_grid_hash(made->grid);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, space_of(made));
+  cli_warn_lattice(cli, given->output, given->write.format, space_of(made));
   if (cli_summary(cli)) {
     cli_rows_space(cli, space_of(made));
     cli_row(cli, "steps", "%" PRId64 " in %.1f ms (%.0f a second)", made->steps, made->carve_ms,
@@ -211,14 +178,14 @@ static int write_rest(cli_run *cli, const request *given, outcome *made) {
     cli_row(cli, "removed", "%" PRId64 " of %" PRId64 " voxels", made->removed, made->before);
     cli_row(cli, "voxels", "%" PRId64, made->before - made->removed);
     cli_row(cli, "hash", "%016" PRIx64, hash);
-    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
   }
   return cli_finish(cli, make_report(cli, given, made, hash));
 }
 
 static int run(cli_run *cli) {
-  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
-  if (read_options(cli, &given) == CLI_STOP || check(cli, &given) == CLI_STOP)
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT, .write = VXM_GRID_WRITE_OPTIONS_INIT};
+  if (cli_read_options(cli, &given) == CLI_STOP || check(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
@@ -230,7 +197,7 @@ static int run(cli_run *cli) {
   if (status == CLI_DONE)
     status = carve(cli, &made, &given);
   if (status == CLI_DONE)
-    status = write_rest(cli, &given, &made);
+    status = write_result(cli, &given, &made);
   vxm_mesh_destroy(made.tool.mesh);
   vxm_grid_destroy(made.grid);
   vxm_sparse_destroy(made.sparse);

@@ -8,43 +8,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_SPARSE };
-
 static const cli_option known_options[] = {
-    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
-    {KEY_SPARSE, "sparse", NULL,
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(combine_request, output)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(combine_request, write.format)},
+    {0, "sparse", NULL,
      "combine octrees, whose memory follows the surface where files are .octree or\n"
-     ".vdb [where the output is .octree]"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_THRESHOLD,
-    {0, NULL, NULL, NULL}};
+     ".vdb [where the output is .octree]",
+     CLI_FLAG(combine_request, sparse)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_SURFACE(combine_request),
+    CLI_OPTIONS_THRESHOLD(combine_request),
+    CLI_OPTIONS_END};
 
 static const char *const operations[] = {"or", "and", "minus", "xor", NULL};
 enum { OR, AND, MINUS, XOR };
-
-static int read_options(cli_run *cli, combine_request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == 'o')
-      out->output = value;
-    else if (key == KEY_FORMAT)
-      out->format = value;
-    else if (key == KEY_FORCE)
-      out->force = true;
-    else if (key == KEY_SPARSE)
-      out->sparse = true;
-    else if (key == KEY_CONTACTS)
-      out->keep_contacts = true;
-    else if (key == KEY_POLYGONS) {
-      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
-      return CLI_STOP;
-  return CLI_END;
-}
 
 /** Grids and words between them take turns: only the grids are left as arguments, the words go to `words`. */
 static int read_formula(cli_run *cli, int *words) {
@@ -64,17 +41,12 @@ static int read_formula(cli_run *cli, int *words) {
   return CLI_END;
 }
 
-static int check_names(cli_run *cli, combine_request *out) {
-  cli_formats formats = cli_formats_with(VXM_FORMAT_BITS);
-  out->format = cli_output_format(cli, out->output, out->format, formats.name);
-  if (!out->format)
+static int check_output(cli_run *cli, combine_request *out) {
+  if (cli_check_grid_output(cli, out->output, &out->write, cli_formats_with(VXM_FORMAT_BITS), true) ==
+      CLI_STOP)
     return CLI_STOP;
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
-  if (cli_check_names(cli) == CLI_STOP ||
-      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
-    return CLI_STOP;
-  out->sparse |= strcmp(out->format, "octree") == 0;
-  return cli_check_surface_file(cli, out->output, out->format, out->force);
+  out->sparse |= strcmp(out->write.format, "octree") == 0;
+  return CLI_END;
 }
 
 /** Files hold a space to about nine digits. */
@@ -185,7 +157,7 @@ static outcome outcome_of(const combine_operand *set) {
   return (outcome){vxm_grid_space(set->grid), vxm_grid_count(set->grid), vxm_grid_hash(set->grid)};
 }
 
-/** What was asked for. */
+/** The part of the report that tells what was asked for. */
 static json_t *make_report(const cli_run *cli, const combine_request *given, const int *words) {
   json_t *report = json_object(), *inputs = json_array(), *names = json_array();
   for (int i = 0; i < cli->argument_count; i++)
@@ -200,23 +172,19 @@ static json_t *make_report(const cli_run *cli, const combine_request *given, con
 
 static int write_set(cli_run *cli, const combine_request *given, const combine_operand *set,
                      const int *words) {
-  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
-  write.format = given->format;
-  write.keep_polygons = given->keep_polygons;
-  write.keep_contacts = given->keep_contacts;
-  vxm_status status = set->sparse ? vxm_sparse_write(set->sparse, given->output, &write, &cli->error)
-                                  : vxm_grid_write(set->grid, given->output, &write, &cli->error);
+  vxm_status status = set->sparse ? vxm_sparse_write(set->sparse, given->output, &given->write, &cli->error)
+                                  : vxm_grid_write(set->grid, given->output, &given->write, &cli->error);
   if (status != VXM_OK)
     return cli_fail(cli);
   const outcome made = outcome_of(set);
   json_t *report = make_report(cli, given, words);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, made.space);
+  cli_warn_lattice(cli, given->output, given->write.format, made.space);
   if (cli_summary(cli)) {
     cli_rows_space(cli, made.space);
     cli_row(cli, "voxels", "%" PRId64, made.voxels);
     cli_row(cli, "hash", "%016" PRIx64, made.hash);
-    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
   }
   json_object_set_new(report, "grid", cli_json_space(made.space));
   json_object_set_new(report, "voxels", json_integer(made.voxels));
@@ -256,14 +224,14 @@ static int combine(cli_run *cli, const combine_request *given, const int *words)
 }
 
 static int run(cli_run *cli) {
-  combine_request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
-  if (read_options(cli, &given) == CLI_STOP)
+  combine_request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT, .write = VXM_GRID_WRITE_OPTIONS_INIT};
+  if (cli_read_options(cli, &given) == CLI_STOP)
     return cli->status;
   int *words = calloc((size_t)cli->argument_count / 2 + 1, sizeof *words);
   if (!words)
     return cli_fail_text(cli, "out of memory for the command line");
   int status = CLI_FAILED;
-  if (read_formula(cli, words) == CLI_STOP || check_names(cli, &given) == CLI_STOP)
+  if (read_formula(cli, words) == CLI_STOP || check_output(cli, &given) == CLI_STOP)
     status = cli->status;
   else if (cli_start(cli))
     status = combine(cli, &given, words);

@@ -5,7 +5,11 @@
 #include <inttypes.h>
 #include <math.h>
 
-static const cli_option known_options[] = {CLI_OPTIONS_THRESHOLD, {0, NULL, NULL, NULL}};
+typedef struct request {
+  vxm_threshold_options threshold;
+} request;
+
+static const cli_option known_options[] = {CLI_OPTIONS_THRESHOLD(request), CLI_OPTIONS_END};
 
 /** Files hold origins and sizes to about nine digits; what is below a thousandth of a voxel is not a move. */
 static void warn_of_places(cli_run *cli, const vxm_space *a, const vxm_space *b) {
@@ -49,12 +53,9 @@ static int compare(cli_run *cli, const vxm_grid *a, const vxm_grid *b) {
   return cli_finish(cli, make_report(cli, &found));
 }
 
-static int read_arguments(cli_run *cli, vxm_threshold_options *threshold) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == CLI_STOP || cli_threshold_read(cli, threshold, key, value) == CLI_STOP)
-      return CLI_STOP;
+static int read_arguments(cli_run *cli, request *out) {
+  if (cli_read_options(cli, out) == CLI_STOP)
+    return CLI_STOP;
   if (cli->argument_count != 2)
     return cli_usage(cli, "two grids are expected, not %d", cli->argument_count);
   return cli_check_names(cli);
@@ -68,15 +69,15 @@ static int read_bits(cli_run *cli, cli_values *out, const vxm_threshold_options 
 }
 
 static int run(cli_run *cli) {
-  vxm_threshold_options threshold = VXM_THRESHOLD_OPTIONS_INIT;
-  if (read_arguments(cli, &threshold) == CLI_STOP)
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
   cli_values values[2] = {{NULL, NULL}, {NULL, NULL}};
   int status = CLI_DONE;
   for (int i = 0; i < 2 && status == CLI_DONE; i++)
-    status = read_bits(cli, &values[i], &threshold, cli->arguments[i]);
+    status = read_bits(cli, &values[i], &given.threshold, cli->arguments[i]);
   if (status == CLI_DONE)
     status = compare(cli, values[0].grid, values[1].grid);
   cli_values_free(&values[0]);

@@ -5,44 +5,18 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum {
-  KEY_FORMAT = CLI_KEY_COMMAND,
-  KEY_FORCE,
-  KEY_POLYGONS,
-  KEY_CONTACTS,
-  KEY_BLOCKS,
-  KEY_UP,
-  KEY_WINDOW,
-  KEY_COVERAGE
-};
-
-static const cli_option known_options[] = {
-    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
-    {KEY_WINDOW, "window", "X:X,Y:Y,Z:Z",
-     "only these voxels: along each axis from the first number, 0 or more, to before\n"
-     "the second; of .octree nothing else is read"},
-    {KEY_COVERAGE, "coverage", "N",
-     "write how much is set of each cube of N voxels along a side instead, 0 to 1; N a\n"
-     "power of two; --window counts cubes then; of .octree a layer is read at a time"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_STYLE(KEY_BLOCKS, KEY_UP),
-    CLI_OPTIONS_THRESHOLD,
-    {0, NULL, NULL, NULL}};
-
 typedef struct request {
-  const char *input, *output, *format;
-  bool force, keep_polygons, keep_contacts;
+  const char *input, *output;
   int coverage; /**< 0 = not wanted */
   bool has_window;
   int64_t begin[3], end[3];
-  cli_style style;
   vxm_threshold_options threshold;
+  vxm_grid_write_options write;
 } request;
 
 /** "0:64,10:20,0:1" */
-static int read_window(cli_run *cli, request *out, const char *value) {
+static int take_window(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  request *out = member;
   char text[128], *rest = text;
   bool is_read = strlen(value) < sizeof text;
   if (is_read)
@@ -55,60 +29,45 @@ static int read_window(cli_run *cli, request *out, const char *value) {
               cli_read_integer(&out->end[a], end, 1, 1 << 20) && out->begin[a] < out->end[a];
   }
   if (!is_read || rest)
-    return cli_usage(cli, "--window '%s' is not X:X,Y:Y,Z:Z, such as 0:64,0:64,10:20", value);
+    return cli_usage(cli, "--%s '%s' is not X:X,Y:Y,Z:Z, such as 0:64,0:64,10:20", option->name, value);
   out->has_window = true;
   return CLI_END;
 }
 
-static int read_coverage(cli_run *cli, request *out, const char *value) {
+static int take_coverage(cli_run *cli, const cli_option *option, const char *value, void *member) {
   int64_t side;
   if (!cli_read_integer(&side, value, 1, 1 << 20) || (side & (side - 1)) != 0)
-    return cli_usage(cli, "--coverage '%s' is none of 1, 2, 4, 8, ... 1048576", value);
-  out->coverage = (int)side;
+    return cli_usage(cli, "--%s '%s' is none of 1, 2, 4, 8, ... 1048576", option->name, value);
+  *(int *)member = (int)side;
   return CLI_END;
 }
 
+static const cli_option known_options[] = {
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output", CLI_TEXT(request, output)},
+    {0, "format", "F", CLI_GRID_FORMATS, CLI_TEXT(request, write.format)},
+    {0, "window", "X:X,Y:Y,Z:Z",
+     "only these voxels: along each axis from the first number, 0 or more, to before\n"
+     "the second; of .octree nothing else is read",
+     CLI_VALUES(take_window)},
+    {0, "coverage", "N",
+     "write how much is set of each cube of N voxels along a side instead, 0 to 1; N a\n"
+     "power of two; --window counts cubes then; of .octree a layer is read at a time",
+     CLI_VALUE(take_coverage, request, coverage)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_SURFACE(request),
+    CLI_OPTIONS_STYLE(request),
+    CLI_OPTIONS_THRESHOLD(request),
+    CLI_OPTIONS_END};
+
 static int read_arguments(cli_run *cli, request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == 'o')
-      out->output = value;
-    else if (key == KEY_FORMAT)
-      out->format = value;
-    else if (key == KEY_FORCE)
-      out->force = true;
-    else if (key == KEY_CONTACTS)
-      out->keep_contacts = true;
-    else if (key == KEY_BLOCKS)
-      out->style.blocks = value;
-    else if (key == KEY_UP) {
-      if (cli_read_up(cli, &out->style, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == KEY_WINDOW) {
-      if (read_window(cli, out, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == KEY_COVERAGE) {
-      if (read_coverage(cli, out, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == KEY_POLYGONS) {
-      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
-        return CLI_STOP;
-    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
-      return CLI_STOP;
+  if (cli_read_options(cli, out) == CLI_STOP)
+    return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
   unsigned any = VXM_FORMAT_BITS | VXM_FORMAT_NUMBERS | VXM_FORMAT_LABELS | VXM_FORMAT_COLORS;
   cli_formats formats = cli_formats_with(out->coverage ? VXM_FORMAT_NUMBERS : any);
-  out->format = cli_output_format(cli, out->output, out->format, formats.name);
-  if (!out->format)
-    return CLI_STOP;
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
-  if (cli_check_names(cli) == CLI_STOP || cli_check_style(cli, &out->style, out->format) == CLI_STOP ||
-      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
-    return CLI_STOP;
-  return cli_check_surface_file(cli, out->output, out->format, out->force);
+  return cli_check_grid_output(cli, out->output, &out->write, formats, true);
 }
 
 static json_t *make_report(const cli_run *cli, const request *given, const cli_values *values) {
@@ -121,7 +80,7 @@ static json_t *make_report(const cli_run *cli, const request *given, const cli_v
   return report;
 }
 
-/** Whether the numbers are whole, and labels as far as one knows; bits in another type are bits. */
+/** Whether a field is of labels: it says so, or its numbers are whole and more than 0 and 1. */
 static bool are_labels(const vxm_field *field) {
   vxm_scalar scalar = vxm_field_scalar(field);
   vxm_field_kind kind = vxm_field_kind_of(field);
@@ -129,15 +88,15 @@ static bool are_labels(const vxm_field *field) {
   return kind == VXM_FIELD_LABELS || (kind == VXM_FIELD_NUMBERS && !is_float && !vxm_field_is_mask(field));
 }
 
-/** Whether the output can have the numbers as they are. */
+/** Whether the output's format can hold the values of a field. */
 static bool keeps_numbers(const request *given, const vxm_field *field) {
-  unsigned traits = vxm_grid_format_traits(given->format);
+  unsigned traits = vxm_grid_format_traits(given->write.format);
   if (vxm_field_kind_of(field) == VXM_FIELD_COLORS)
     return (traits & (VXM_FORMAT_COLORS | VXM_FORMAT_NUMBERS)) != 0;
   return (traits & VXM_FORMAT_NUMBERS) || ((traits & VXM_FORMAT_LABELS) && are_labels(field));
 }
 
-/** Leaves the window of what a file holds. */
+/** Cuts the values down to --window. */
 static vxm_status cut(cli_run *cli, const request *given, cli_values *values) {
   cli_values part = {NULL, NULL};
   vxm_status status =
@@ -159,7 +118,7 @@ static vxm_status read_part(cli_run *cli, const request *given, cli_values *out)
   return status;
 }
 
-/** Coverage by the index and a part of the octree at a time. */
+/** Coverage of an octree file, of which a part at a time is in memory. */
 static vxm_status count_file(cli_run *cli, const request *given, const vxm_coverage_options *options,
                              vxm_field **out) {
   vxm_sparse_file *file;
@@ -199,43 +158,38 @@ static int read_values(cli_run *cli, const request *given, cli_values *values) {
 }
 
 /** Numbers stay numbers where the output holds them; else they become bits, or are refused. */
-static int settle(cli_run *cli, const request *given, cli_values *values) {
+static int choose_bits_or_numbers(cli_run *cli, const request *given, cli_values *values) {
   char why[64];
   if (values->grid && cli_threshold_given(&given->threshold))
     cli_warn(cli, "%s holds set and clear voxels already: --threshold and --below are not applied",
              cli_shown(given->input, "<stdin>"));
-  if (given->coverage) /* was for what has been counted */
+  if (given->coverage) /* the threshold has been applied before the coverage was counted */
     return CLI_DONE;
   if (values->grid || (!cli_threshold_given(&given->threshold) && keeps_numbers(given, values->field)))
     return CLI_DONE;
-  snprintf(why, sizeof why, ".%s holds only set and clear voxels", given->format);
+  snprintf(why, sizeof why, ".%s holds only set and clear voxels", given->write.format);
   return cli_values_to_bits(cli, values, &given->threshold, given->input, why);
 }
 
 static int convert(cli_run *cli, const request *given, const cli_values *values) {
-  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
-  write.format = given->format;
-  write.keep_polygons = given->keep_polygons;
-  write.keep_contacts = given->keep_contacts;
-  write.blocks = given->style.blocks;
-  write.up = given->style.up;
-  vxm_status status = values->grid ? vxm_grid_write(values->grid, given->output, &write, &cli->error)
-                                   : vxm_field_write(values->field, given->output, &write, &cli->error);
+  vxm_status status = values->grid
+                          ? vxm_grid_write(values->grid, given->output, &given->write, &cli->error)
+                          : vxm_field_write(values->field, given->output, &given->write, &cli->error);
   if (status != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, cli_values_space(values));
+  cli_warn_lattice(cli, given->output, given->write.format, cli_values_space(values));
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
     cli_rows_space(cli, cli_values_space(values));
     cli_values_row(cli, values);
-    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
   }
   return cli_finish(cli, make_report(cli, given, values));
 }
 
 static int run(cli_run *cli) {
-  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT, .write = VXM_GRID_WRITE_OPTIONS_INIT};
   if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
@@ -243,7 +197,7 @@ static int run(cli_run *cli) {
   cli_values values = {NULL, NULL};
   if (read_values(cli, &given, &values) != CLI_DONE)
     return CLI_FAILED;
-  int status = settle(cli, &given, &values);
+  int status = choose_bits_or_numbers(cli, &given, &values);
   if (status == CLI_DONE)
     status = convert(cli, &given, &values);
   cli_values_free(&values);

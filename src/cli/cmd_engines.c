@@ -6,7 +6,7 @@
 
 enum { ENGINES_MAX = 80 };
 
-static const cli_option known_options[] = {{0, NULL, NULL, NULL}};
+static const cli_option known_options[] = {CLI_OPTIONS_END};
 
 static void add_opencl(json_t *object, const vxm_engine_info *info) {
   json_object_set_new(object, "platform", cli_json_text(info->platform));
@@ -105,10 +105,9 @@ static json_t *reading_json(const vxm_reading_info *info) {
 
 static int run(cli_run *cli) {
   static vxm_engine_info found[ENGINES_MAX];
-  const char *value;
   int64_t count;
   vxm_reading_info reading = VXM_READING_INFO_INIT;
-  if (cli_next_option(cli, &value) == CLI_STOP)
+  if (cli_read_options(cli, NULL) == CLI_STOP)
     return cli->status;
   if (cli->argument_count != 0) {
     cli_usage(cli, "no argument is expected, not %d", cli->argument_count);

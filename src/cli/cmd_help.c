@@ -4,14 +4,18 @@
 
 #include <string.h>
 
-enum { KEY_TABLE = CLI_KEY_COMMAND, KEY_ALL };
+typedef struct request {
+  bool is_table, is_all;
+} request;
 
 static const cli_option known_options[] = {
-    {KEY_TABLE, "table", NULL,
+    {0, "table", NULL,
      "as lines with tabs, for programs: the names of the commands with what they do,\n"
-     "or the options of one, each with its letter, what it takes, and what it is for"},
-    {KEY_ALL, "all", NULL, "the same with the options of another command that one takes too"},
-    {0, NULL, NULL, NULL}};
+     "or the options of one, each with its letter, what it takes, and what it is for",
+     CLI_FLAG(request, is_table)},
+    {0, "all", NULL, "the same with the options of another command that one takes too",
+     CLI_FLAG(request, is_all)},
+    CLI_OPTIONS_END};
 
 void cli_help_overview(void) {
   printf("Usage: voxmend COMMAND [ARGUMENT]...\n"
@@ -59,13 +63,9 @@ static void print_table(const cli_command *command, bool is_all) {
 
 static int run(cli_run *cli) {
   char hint[CLI_LIST_MAX];
-  const char *value;
-  bool is_table = false, is_all = false;
-  for (int key; (key = cli_next_option(cli, &value)) != CLI_END; is_table = true) {
-    if (key == CLI_STOP)
-      return cli->status;
-    is_all |= key == KEY_ALL;
-  }
+  request given = {false, false};
+  if (cli_read_options(cli, &given) == CLI_STOP)
+    return cli->status;
   if (cli->argument_count > 1)
     cli_usage(cli, "one command is expected, not %d", cli->argument_count);
   const char *name = cli->argument_count > 0 ? cli->arguments[0] : NULL;
@@ -74,8 +74,8 @@ static int run(cli_run *cli) {
     cli_usage(cli, "unknown command '%s'%s", name, cli_suggest_command(hint, name));
   if (cli->status != 0)
     return cli->status;
-  if (is_table)
-    print_table(command, is_all);
+  if (given.is_table || given.is_all)
+    print_table(command, given.is_all);
   else if (command)
     cli_help(command);
   else

@@ -9,16 +9,17 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS, KEY_FORCE };
-
 static const cli_option known_options[] = {
-    {KEY_LOCATE, "locate", "FILE.ply", "show what is wrong, in colour on the mesh; for one mesh"},
-    {KEY_LIST, "list", "N", "list what is wrong, up to N of each kind, with indices and coordinates"},
-    {KEY_INTERSECTIONS, "intersections", NULL,
-     "count faces that cut through others, and show them with --locate and\n--list (CGAL)"},
-    {KEY_FORCE, "force", NULL, "replace a mesh that is there with --locate"},
+    {0, "locate", "FILE.ply", "show what is wrong, in colour on the mesh; for one mesh",
+     CLI_TEXT(cli_defects, locate)},
+    {0, "list", "N", "list what is wrong, up to N of each kind, with indices and coordinates",
+     CLI_NUMBER(cli_defects, list, 1, CLI_LISTED_MAX)},
+    {0, "intersections", NULL,
+     "count faces that cut through others, and show them with --locate and\n--list (CGAL)",
+     CLI_FLAG(cli_defects, intersections)},
+    {0, "force", NULL, "replace a mesh that is there with --locate", CLI_NOTED},
     CLI_OPTIONS_READ,
-    {0, NULL, NULL, NULL}};
+    CLI_OPTIONS_END};
 
 /** What is known of a mesh. */
 typedef struct description {
@@ -122,12 +123,12 @@ static int count_openings(cli_run *cli, cli_openings *out, const description *d)
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-/** What has been told so far. */
+/** What stands in the output so far. */
 typedef struct told {
-  bool any, is_grid; /**< and of what the last of it was */
+  bool any, is_grid; /**< is_grid: the last file was one */
 } told;
 
-/** Whether a file is the first of all, or stands behind one of the other kind. */
+/** Whether a file needs a heading: it is the first, or follows one of the other kind. */
 static bool begins_table(told *before, bool is_grid) {
   bool begins = !before->any || before->is_grid != is_grid;
   *before = (told){true, is_grid};
@@ -206,21 +207,8 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
 }
 
 static int read_arguments(cli_run *cli, cli_defects *wanted) {
-  const char *value;
-  bool force = false;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END) {
-    if (key == CLI_STOP)
-      return CLI_STOP;
-    if (key == KEY_FORCE)
-      force = true;
-    else if (key == KEY_LOCATE)
-      wanted->locate = value;
-    else if (key == KEY_INTERSECTIONS)
-      wanted->intersections = true;
-    else if (cli_defects_read_list(cli, wanted, value) == CLI_STOP)
-      return CLI_STOP;
-  }
+  if (cli_read_options(cli, wanted) == CLI_STOP)
+    return CLI_STOP;
   if (cli->argument_count < 1)
     return cli_usage(cli, "a mesh or grid is missing");
   if (wanted->locate && cli->argument_count > 1)
@@ -232,7 +220,7 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
   if (cli_defects_check(cli, wanted) == CLI_STOP)
     return CLI_STOP;
   cli_writes(cli, "--locate", wanted->locate, false);
-  return cli_check_names(cli) == CLI_STOP ? CLI_STOP : cli_defects_check_file(cli, wanted, force);
+  return cli_check_names(cli) == CLI_STOP ? CLI_STOP : cli_defects_check_file(cli, wanted);
 }
 
 static int run(cli_run *cli) {

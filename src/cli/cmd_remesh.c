@@ -6,25 +6,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_THIN, KEY_ASCII, KEY_FORMAT, KEY_FORCE };
-
-static const cli_option known_options[] = {
-    {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)"},
-    {'r', "resolution", "N", "voxels along the longest side of the model [128]"},
-    {KEY_SIZE, "voxel-size", "S|SX,SY,SZ", "sides of a voxel in model units, instead of -r"},
-    {KEY_THIN, "thin", "keep|drop|26",
-     "parts thinner than a voxel: those that are kept come out whole, plates and\n"
-     "walls two thirds of a voxel thick or more; keep and 26 are the same here\n"
-     "[keep]"},
-    {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
-    {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_READ,
-    {0, NULL, NULL, NULL}};
-
 typedef struct request {
   const char *input, *output;
-  bool force;
   vxm_space_options space;
   vxm_voxelize_options voxelize;
   vxm_mesh_write_options write;
@@ -38,37 +21,33 @@ typedef struct outcome {
   double remesh_ms, write_ms;
 } outcome;
 
-static int read_option(cli_run *cli, request *out, int key, const char *value) {
-  switch (key) {
-  case 'o':
-    out->output = value;
+static int take_resolution(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  if (cli_read_integer(member, value, option->to.min, option->to.max))
     return CLI_END;
-  case 'r':
-    if (!cli_read_integer(&out->space.resolution[0], value, 1, 1 << 20))
-      return cli_usage(cli, "-r '%s' is not a number of voxels from 1 to 1048576", value);
-    return CLI_END;
-  case KEY_SIZE:
-    return cli_read_voxel_size(cli, &out->space, value);
-  case KEY_FORCE:
-    out->force = true;
-    return CLI_END;
-  case KEY_THIN:
-    return cli_read_thin(cli, &out->voxelize, value);
-  case KEY_ASCII:
-    out->write.ascii = true;
-    return CLI_END;
-  default:
-    out->write.format = value;
-    return CLI_END;
-  }
+  return cli_usage(cli, "-r '%s' is not a number of voxels from 1 to 1048576", value);
 }
 
+static const cli_option known_options[] = {
+    {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)",
+     CLI_TEXT(request, output)},
+    {'r', "resolution", "N", "voxels along the longest side of the model [128]",
+     CLI_VALUE(take_resolution, request, space.resolution[0], .min = 1, .max = 1 << 20)},
+    {0, "voxel-size", "S|SX,SY,SZ", "sides of a voxel in model units, instead of -r",
+     CLI_VALUE(cli_take_voxel_size, request, space)},
+    {0, "thin", "keep|drop|26",
+     "parts thinner than a voxel: those that are kept come out whole, plates and\n"
+     "walls two thirds of a voxel thick or more; keep and 26 are the same here\n"
+     "[keep]",
+     CLI_CHOICE_FROM(VXM_THIN_KEEP, request, voxelize.thin, cli_thin_parts)},
+    {0, "ascii", NULL, "write .stl and .ply as text rather than binary", CLI_FLAG(request, write.ascii)},
+    {0, "format", "F", "off, obj, stl or ply [by the name of the output]", CLI_TEXT(request, write.format)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_READ,
+    CLI_OPTIONS_END};
+
 static int read_arguments(cli_run *cli, request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
-      return CLI_STOP;
+  if (cli_read_options(cli, out) == CLI_STOP)
+    return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
@@ -81,9 +60,8 @@ static int read_arguments(cli_run *cli, request *out) {
   if (!out->write.format)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, false);
-  return cli_check_names(cli) == CLI_STOP
-             ? CLI_STOP
-             : cli_check_surface_file(cli, out->output, out->write.format, out->force);
+  return cli_check_names(cli) == CLI_STOP ? CLI_STOP
+                                          : cli_check_surface_file(cli, out->output, out->write.format);
 }
 
 static json_t *make_report(const cli_run *cli, const request *given, const outcome *made) {

@@ -5,97 +5,9 @@
 
 #include <string.h>
 
-enum {
-  KEY_LEVEL = CLI_KEY_COMMAND,
-  KEY_BEST_EFFORT,
-  KEY_WELD,
-  KEY_KEEP,
-  KEY_TURNED,
-  KEY_FILL_HOLES,
-  KEY_FILL,
-  KEY_SHEETS,
-  KEY_THICKNESS,
-  KEY_DROP_PARTS,
-  KEY_UNION,
-  KEY_FALLBACK,
-  KEY_WRAP,
-  KEY_MAX_CHANGE,
-  KEY_LOCATE,
-  KEY_LIST,
-  KEY_INTERSECTIONS,
-  KEY_ASCII,
-  KEY_POLYGONS,
-  KEY_FORMAT,
-  KEY_FORCE
-};
-
-static const cli_option known_options[] = {
-    {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)"},
-    {KEY_LEVEL, "level", "clean|manifold|closed|solid",
-     "how far to go; each includes those before it, and is verified in the\n"
-     "file as it is read back and welded [clean]:\n"
-     "clean     nothing is left to weld, remove or turn\n"
-     "manifold  no edge has more than two faces, no vertex more than one fan\n"
-     "closed    every edge has two faces: holes are filled, sheets thickened\n"
-     "solid     no face cuts through another: parts are united"},
-    {KEY_BEST_EFFORT, "best-effort", NULL,
-     "write the mesh, with a warning, although the level is not reached"},
-    {KEY_WELD, "weld", "auto|off|EPS",
-     "which vertices become one: auto = those at identical positions, and\n"
-     "near ones where that closes cracks; off = identical positions only;\n"
-     "EPS = all that are no farther apart, in model units: each goes to the\n"
-     "nearest that stays, and no two that stay are within EPS. Edges that\n"
-     "short collapse, and walls that thin close up [auto]"},
-    {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
-    {KEY_TURNED, "keep-orientation", NULL,
-     "leave faces turned as they are, rather than consistently and outward"},
-    {KEY_FILL_HOLES, "fill-holes", "N|all",
-     "fill holes with at most N edges [none; all from level closed on].\n"
-     "Open sheets are not: that would only duplicate them; see --sheets"},
-    {KEY_FILL, "fill", "fan|minimal|smooth",
-     "with what: fan = triangles from the middle of the rim; minimal = the\n"
-     "triangulation of least area (OpenMesh); smooth = small triangles that\n"
-     "continue the surface (CGAL) [fan]"},
-    {KEY_SHEETS, "sheets", "thicken|keep|drop",
-     "what becomes of open sheets at the levels closed and solid: plates, with\n"
-     "their faces moved to both sides; keep leaves them open, and the level is\n"
-     "not reached [thicken]"},
-    {KEY_THICKNESS, "thickness", "T",
-     "how thick, in model units; at most the model's diagonal [0.002 of that]"},
-    {KEY_DROP_PARTS, "drop-parts", "faces:N|volume:V",
-     "drop components with fewer than N faces, or closed ones with less volume\n"
-     "than V, in model units cubed; may be given twice, once for each. The\n"
-     "component with the largest area always stays, and cavities with what they\n"
-     "are in"},
-    {KEY_UNION, "union", NULL, "unite closed parts that cut through each other (CGAL)"},
-    {KEY_FALLBACK, "fallback", "wrap[:ALPHA]",
-     "wrap those parts alone that cannot be united, with --union or --level\n"
-     "solid; ALPHA as below, of their own diagonal [0.01] (CGAL)"},
-    {KEY_WRAP, "wrap", "ALPHA[,OFFSET]",
-     "lay a closed surface around everything: ALPHA is the smallest hole that\n"
-     "it goes into, OFFSET its distance, as fractions of the diagonal, such as\n"
-     "0.02 [OFFSET: ALPHA/30] (CGAL)"},
-    {KEY_MAX_CHANGE, "max-change", "F",
-     "fail if the volume of a closed part, or the bounds of one, change by more\n"
-     "than this fraction, such as 0.01"},
-    {KEY_LOCATE, "locate", "FILE.ply", "show what was wrong, in colour on the mesh as it was read"},
-    {KEY_LIST, "list", "N", "list what was wrong, up to N of each kind"},
-    {KEY_INTERSECTIONS, "intersections", NULL,
-     "count faces that cut through others, before and after, and show them with\n"
-     "--locate and --list (CGAL). With --union and --level solid they are\n"
-     "counted in any case"},
-    {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
-    {KEY_POLYGONS, "polygons", "split|keep",
-     "split = write triangles, as many programs read nothing else; keep = leave\n"
-     "polygons as they are in .off, .obj and .ply [split]"},
-    {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
-    CLI_OPTION_FORCE(KEY_FORCE),
-    CLI_OPTIONS_READ,
-    {0, NULL, NULL, NULL}};
-
 typedef struct request {
   const char *input, *output, *format;
-  bool fill, sheets, best_effort, force;
+  bool best_effort;
   vxm_repair_options repair;
   vxm_mesh_write_options write;
   cli_defects defects;
@@ -103,139 +15,166 @@ typedef struct request {
 
 /* ---- Options ---- */
 
-static int read_fill_holes(cli_run *cli, request *out, const char *value) {
+static int take_fill_holes(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  int64_t *edges = member;
   if (strcmp(value, "all") == 0)
-    out->repair.fill_holes = -1;
-  else if (!cli_read_integer(&out->repair.fill_holes, value, 3, INT64_MAX))
-    return cli_usage(cli, "--fill-holes '%s' is neither all nor a number of edges from 3 on", value);
+    *edges = -1;
+  else if (!cli_read_integer(edges, value, 3, INT64_MAX))
+    return cli_usage(cli, "--%s '%s' is neither all nor a number of edges from 3 on", option->name, value);
   return CLI_END;
 }
 
-static int read_drop_parts(cli_run *cli, request *out, const char *value) {
+static int take_drop_parts(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  vxm_repair_options *repair = member;
   const char *number = strchr(value, ':');
   size_t length = number ? (size_t)(number++ - value) : 0;
   if (length == 5 && strncmp(value, "faces", length) == 0 &&
-      cli_read_integer(&out->repair.drop_faces, number, 1, INT64_MAX))
+      cli_read_integer(&repair->drop_faces, number, 1, INT64_MAX))
     return CLI_END;
-  if (length == 6 && strncmp(value, "volume", length) == 0 &&
-      cli_read_number(&out->repair.drop_volume, number) && out->repair.drop_volume > 0)
+  if (length == 6 && strncmp(value, "volume", length) == 0 && cli_read_number(&repair->drop_volume, number) &&
+      repair->drop_volume > 0)
     return CLI_END;
-  return cli_usage(
-      cli, "--drop-parts '%s' is neither faces:N, such as faces:50, nor volume:V, such as volume:0.1", value);
+  return cli_usage(cli, "--%s '%s' is neither faces:N, such as faces:50, nor volume:V, such as volume:0.1",
+                   option->name, value);
 }
 
-static int read_wrap(cli_run *cli, request *out, const char *value) {
+static int take_wrap(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  vxm_repair_options *repair = member;
   double numbers[2] = {0, 0};
   if (!cli_read_numbers(numbers, strchr(value, ',') ? 2 : 1, value) || !(numbers[0] > 0 && numbers[0] <= 1) ||
       !(numbers[1] >= 0 && numbers[1] <= 1))
-    return cli_usage(
-        cli, "--wrap '%s' is not a fraction of the diagonal such as 0.02, or two such as 0.02,0.001", value);
-  out->repair.wrap_alpha = numbers[0];
-  out->repair.wrap_offset = numbers[1];
+    return cli_usage(cli,
+                     "--%s '%s' is not a fraction of the diagonal such as 0.02, or two such as 0.02,0.001",
+                     option->name, value);
+  repair->wrap_alpha = numbers[0];
+  repair->wrap_offset = numbers[1];
   return CLI_END;
 }
 
-static int read_fallback(cli_run *cli, request *out, const char *value) {
+static int take_fallback(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  vxm_repair_options *repair = member;
   double alpha = 0.01;
   bool known = strncmp(value, "wrap", 4) == 0 && (value[4] == 0 || value[4] == ':');
   if (known && value[4] == ':')
     known = cli_read_number(&alpha, value + 5) && alpha > 0 && alpha <= 1;
   if (!known)
-    return cli_usage(cli, "--fallback '%s' is neither wrap nor wrap:ALPHA, such as wrap:0.005", value);
-  out->repair.fallback_alpha = alpha;
+    return cli_usage(cli, "--%s '%s' is neither wrap nor wrap:ALPHA, such as wrap:0.005", option->name,
+                     value);
+  repair->fallback_alpha = alpha;
   return CLI_END;
 }
 
-static int read_option(cli_run *cli, request *out, int key, const char *value) {
-  static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
-  static const char *const sheets[] = {"thicken", "keep", "drop", NULL};
-  int choice = 0, result;
-  switch (key) {
-  case 'o':
-    out->output = value;
+static int take_thickness(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  if (cli_read_number(member, value) && *(double *)member > 0)
     return CLI_END;
-  case KEY_LEVEL:
-    result = cli_choose(cli, &choice, "level", value, repair_levels);
-    out->repair.level = (vxm_level)choice;
-    return result;
-  case KEY_FILL:
-    out->fill = true;
-    result = cli_choose(cli, &choice, "fill", value, fills);
-    out->repair.hole_fill = (vxm_hole_fill)choice;
-    return result;
-  case KEY_FORCE:
-    out->force = true;
-    return CLI_END;
-  case KEY_BEST_EFFORT:
-    out->best_effort = true;
-    return CLI_END;
-  case KEY_WELD:
-    return cli_read_weld(cli, &out->repair, value);
-  case KEY_KEEP:
-    out->repair.keep_duplicates = true;
-    return CLI_END;
-  case KEY_TURNED:
-    out->repair.keep_orientation = true;
-    return CLI_END;
-  case KEY_FILL_HOLES:
-    return read_fill_holes(cli, out, value);
-  case KEY_SHEETS:
-    out->sheets = true;
-    result = cli_choose(cli, &choice, "sheets", value, sheets);
-    out->repair.sheets = (vxm_sheets)choice;
-    return result;
-  case KEY_THICKNESS:
-    if (!cli_read_number(&out->repair.thickness, value) || !(out->repair.thickness > 0))
-      return cli_usage(cli, "--thickness '%s' is not a length above 0, such as 0.5", value);
-    return CLI_END;
-  case KEY_DROP_PARTS:
-    return read_drop_parts(cli, out, value);
-  case KEY_UNION:
-    out->repair.boolean_union = true;
-    return CLI_END;
-  case KEY_FALLBACK:
-    return read_fallback(cli, out, value);
-  case KEY_WRAP:
-    return read_wrap(cli, out, value);
-  case KEY_MAX_CHANGE:
-    if (!cli_read_number(&out->repair.max_change, value) || !(out->repair.max_change > 0))
-      return cli_usage(cli, "--max-change '%s' is not a fraction above 0, such as 0.01", value);
-    return CLI_END;
-  case KEY_LOCATE:
-    out->defects.locate = value;
-    return CLI_END;
-  case KEY_LIST:
-    return cli_defects_read_list(cli, &out->defects, value);
-  case KEY_INTERSECTIONS:
-    out->defects.intersections = true;
-    return CLI_END;
-  case KEY_ASCII:
-    out->write.ascii = true;
-    return CLI_END;
-  case KEY_POLYGONS:
-    return cli_read_polygons(cli, &out->write.keep_polygons, value);
-  default:
-    out->format = value;
-    return CLI_END;
-  }
+  return cli_usage(cli, "--%s '%s' is not a length above 0, such as 0.5", option->name, value);
 }
+
+static int take_max_change(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  if (cli_read_number(member, value) && *(double *)member > 0)
+    return CLI_END;
+  return cli_usage(cli, "--%s '%s' is not a fraction above 0, such as 0.01", option->name, value);
+}
+
+static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
+static const char *const sheets[] = {"thicken", "keep", "drop", NULL};
+
+static const cli_option known_options[] = {
+    {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)",
+     CLI_TEXT(request, output)},
+    {0, "level", "clean|manifold|closed|solid",
+     "how far to go; each includes those before it, and is verified in the\n"
+     "file as it is read back and welded [clean]:\n"
+     "clean     nothing is left to weld, remove or turn\n"
+     "manifold  no edge has more than two faces, no vertex more than one fan\n"
+     "closed    every edge has two faces: holes are filled, sheets thickened\n"
+     "solid     no face cuts through another: parts are united",
+     CLI_CHOICE(request, repair.level, repair_levels)},
+    {0, "best-effort", NULL, "write the mesh, with a warning, although the level is not reached",
+     CLI_FLAG(request, best_effort)},
+    {0, "weld", "auto|off|EPS",
+     "which vertices become one: auto = those at identical positions, and\n"
+     "near ones where that closes cracks; off = identical positions only;\n"
+     "EPS = all that are no farther apart, in model units: each goes to the\n"
+     "nearest that stays, and no two that stay are within EPS. Edges that\n"
+     "short collapse, and walls that thin close up [auto]",
+     CLI_VALUE(cli_take_weld, request, repair)},
+    {0, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it",
+     CLI_FLAG(request, repair.keep_duplicates)},
+    {0, "keep-orientation", NULL, "leave faces turned as they are, rather than consistently and outward",
+     CLI_FLAG(request, repair.keep_orientation)},
+    {0, "fill-holes", "N|all",
+     "fill holes with at most N edges [none; all from level closed on].\n"
+     "Open sheets are not: that would only duplicate them; see --sheets",
+     CLI_VALUE(take_fill_holes, request, repair.fill_holes)},
+    {0, "fill", "fan|minimal|smooth",
+     "with what: fan = triangles from the middle of the rim; minimal = the\n"
+     "triangulation of least area (OpenMesh); smooth = small triangles that\n"
+     "continue the surface (CGAL) [fan]",
+     CLI_CHOICE(request, repair.hole_fill, fills)},
+    {0, "sheets", "thicken|keep|drop",
+     "what becomes of open sheets at the levels closed and solid: plates, with\n"
+     "their faces moved to both sides; keep leaves them open, and the level is\n"
+     "not reached [thicken]",
+     CLI_CHOICE(request, repair.sheets, sheets)},
+    {0, "thickness", "T", "how thick, in model units; at most the model's diagonal [0.002 of that]",
+     CLI_VALUE(take_thickness, request, repair.thickness)},
+    {0, "drop-parts", "faces:N|volume:V",
+     "drop components with fewer than N faces, or closed ones with less volume\n"
+     "than V, in model units cubed; may be given twice, once for each. The\n"
+     "component with the largest area always stays, and cavities with what they\n"
+     "are in",
+     CLI_VALUE(take_drop_parts, request, repair)},
+    {0, "union", NULL, "unite closed parts that cut through each other (CGAL)",
+     CLI_FLAG(request, repair.boolean_union)},
+    {0, "fallback", "wrap[:ALPHA]",
+     "wrap those parts alone that cannot be united, with --union or --level\n"
+     "solid; ALPHA as below, of their own diagonal [0.01] (CGAL)",
+     CLI_VALUE(take_fallback, request, repair)},
+    {0, "wrap", "ALPHA[,OFFSET]",
+     "lay a closed surface around everything: ALPHA is the smallest hole that\n"
+     "it goes into, OFFSET its distance, as fractions of the diagonal, such as\n"
+     "0.02 [OFFSET: ALPHA/30] (CGAL)",
+     CLI_VALUE(take_wrap, request, repair)},
+    {0, "max-change", "F",
+     "fail if the volume of a closed part, or the bounds of one, change by more\n"
+     "than this fraction, such as 0.01",
+     CLI_VALUE(take_max_change, request, repair.max_change)},
+    {0, "locate", "FILE.ply", "show what was wrong, in colour on the mesh as it was read",
+     CLI_TEXT(request, defects.locate)},
+    {0, "list", "N", "list what was wrong, up to N of each kind",
+     CLI_NUMBER(request, defects.list, 1, CLI_LISTED_MAX)},
+    {0, "intersections", NULL,
+     "count faces that cut through others, before and after, and show them with\n"
+     "--locate and --list (CGAL). With --union and --level solid they are\n"
+     "counted in any case",
+     CLI_FLAG(request, defects.intersections)},
+    {0, "ascii", NULL, "write .stl and .ply as text rather than binary", CLI_FLAG(request, write.ascii)},
+    {0, "polygons", "split|keep",
+     "split = write triangles, as many programs read nothing else; keep = leave\n"
+     "polygons as they are in .off, .obj and .ply [split]",
+     CLI_CHOICE(request, write.keep_polygons, cli_polygon_kinds)},
+    {0, "format", "F", "off, obj, stl or ply [by the name of the output]", CLI_TEXT(request, format)},
+    CLI_OPTION_FORCE,
+    CLI_OPTIONS_READ,
+    CLI_OPTIONS_END};
 
 static int check_conflicts(cli_run *cli, const request *given) {
   const vxm_repair_options *repair = &given->repair;
   if (repair->keep_orientation && repair->level > VXM_LEVEL_CLEAN)
     return cli_usage(cli, "--level %s turns faces; leave out --keep-orientation",
                      repair_levels[repair->level]);
-  if (repair->wrap_alpha > 0 &&
-      (repair->fill_holes != 0 || given->fill || repair->boolean_union || repair->max_change > 0))
+  if (repair->wrap_alpha > 0 && (repair->fill_holes != 0 || cli_is_given(cli, "fill") ||
+                                 repair->boolean_union || repair->max_change > 0))
     return cli_usage(cli, "--wrap makes a new surface, without holes or parts to compare; leave out "
                           "--fill-holes, --fill, --union and --max-change");
-  if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
+  if (cli_is_given(cli, "fill") && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
   if (repair->fallback_alpha > 0 &&
       (repair->wrap_alpha > 0 || !(repair->boolean_union || repair->level == VXM_LEVEL_SOLID)))
     return cli_usage(cli, "--fallback goes with --union or --level solid, without --wrap");
   bool plates = repair->thickness > 0;
-  if ((given->sheets || plates) && (repair->level < VXM_LEVEL_CLOSED || repair->wrap_alpha > 0))
+  if ((cli_is_given(cli, "sheets") || plates) && (repair->level < VXM_LEVEL_CLOSED || repair->wrap_alpha > 0))
     return cli_usage(cli, "%s goes with --level closed or solid, without --wrap",
                      plates ? "--thickness" : "--sheets");
   if (plates && repair->sheets != VXM_SHEETS_THICKEN)
@@ -245,25 +184,21 @@ static int check_conflicts(cli_run *cli, const request *given) {
 
 /** CLI_DONE, or CLI_STOP with cli->status set. */
 static int read_arguments(cli_run *cli, request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
-      return CLI_STOP;
+  if (cli_read_options(cli, out) == CLI_STOP)
+    return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
   out->write.format = cli_output_format(cli, out->output, out->format, cli_mesh_formats);
-  if (!out->write.format ||
-      cli_check_quads(cli, out->write.keep_polygons, false, out->write.format) == CLI_STOP)
+  if (!out->write.format || cli_check_polygons(cli, out->write.keep_polygons, out->write.format) == CLI_STOP)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, false);
   cli_writes(cli, "--locate", out->defects.locate, false);
   if (cli_check_names(cli) == CLI_STOP ||
-      cli_check_surface_file(cli, out->output, out->write.format, out->force) == CLI_STOP ||
-      cli_defects_check_file(cli, &out->defects, out->force) == CLI_STOP)
+      cli_check_surface_file(cli, out->output, out->write.format) == CLI_STOP ||
+      cli_defects_check_file(cli, &out->defects) == CLI_STOP)
     return CLI_STOP;
   out->repair.part_changes = cli_summary(cli) || cli->json || cli->report;
   out->repair.intersections =

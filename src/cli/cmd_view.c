@@ -7,31 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_AZIMUTH, KEY_ELEVATION, KEY_UP, KEY_SLICE, KEY_COLOR, KEY_LABELS };
-
 enum { RESOLUTION = 128, VALUES_RESOLUTION_MAX = 512 };
-
-static const cli_option known_options[] = {
-    {'o', "output", "FILE", "picture (.png), or page for a browser (.html), to write"},
-    {'r', "resolution", "N", "voxels along the longest side of a mesh [128]"},
-    {KEY_COLOR, "color", "mesh|position|part|noise", "colours of a mesh's voxels, as for voxelize"},
-    {KEY_LABELS, "labels", "part|group|material", "labels of a mesh's voxels, as for voxelize"},
-    {KEY_SLICE, "slice", "x|y|z=S", "the cross-section at a share S, from 0 to 1, of the grid along an axis"},
-    {KEY_SIZE, "size", "WxH", "pixels, each from 1 to 16384 [800x600]"},
-    {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
-    {KEY_ELEVATION, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]"},
-    {KEY_UP, "up", "x|y|z", "axis that points up [by the format of a mesh, else z]"},
-    CLI_OPTIONS_THRESHOLD,
-    CLI_OPTIONS_READ,
-    {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output;
   bool is_page;
-  const char *of_picture; /**< an option that is for pictures alone, or NULL */
-  const char *of_view;    /**< one of these that tells where to look from, or NULL */
-  int64_t resolution;     /**< 0 = not given */
-  const char *of_mesh;    /**< an option that is for meshes alone, or NULL */
+  int64_t resolution;  /**< 0 = not given */
+  const char *of_mesh; /**< an option that is for meshes alone, or NULL */
   bool has_colors, has_labels;
   vxm_color_options colors;
   vxm_label_options labels;
@@ -73,84 +55,73 @@ static bool read_slice(vxm_picture_options *out, const char *text) {
   return cli_read_number(&out->slice, text + 2) && out->slice >= 0 && out->slice <= 1;
 }
 
-static int read_color(cli_run *cli, request *out, const char *value) {
+static int take_color(cli_run *cli, const cli_option *option, const char *value, void *member) {
   static const char *const names[] = {"mesh", "position", "part", "noise", NULL};
   static const vxm_color_by by[] = {VXM_COLOR_MESH, VXM_COLOR_POSITION, VXM_COLOR_PART, VXM_COLOR_NOISE};
-  int choice = 0;
-  if (cli_choose(cli, &choice, "color", value, names) == CLI_STOP)
+  vxm_color_options *colors = member;
+  int choice;
+  if (cli_choose(cli, &choice, option->name, value, names) == CLI_STOP)
     return CLI_STOP;
-  out->has_colors = true;
-  out->colors.by = by[choice];
-  cli->read.colors = out->colors.by == VXM_COLOR_MESH;
+  colors->by = by[choice];
+  cli->read.colors = colors->by == VXM_COLOR_MESH;
   return CLI_END;
 }
 
-static int read_labels(cli_run *cli, request *out, const char *value) {
-  static const char *const names[] = {"part", "group", "material", NULL};
-  int choice = 0;
-  if (cli_choose(cli, &choice, "labels", value, names) == CLI_STOP)
-    return CLI_STOP;
-  out->has_labels = true;
-  out->labels.by = (vxm_label_by)choice;
-  return CLI_END;
+static int take_size(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  if (read_size(member, value))
+    return CLI_END;
+  return cli_usage(cli, "--%s '%s' is not WxH, each from 1 to 16384", option->name, value);
 }
 
-static int read_option(cli_run *cli, request *out, int key, const char *value) {
-  static const char *const axes[] = {"x", "y", "z", NULL};
-  vxm_picture_options *picture = &out->picture;
-  int choice = 0, result;
-  if (key == KEY_SLICE)
-    out->of_picture = "--slice";
-  if (key == KEY_SIZE || key == KEY_AZIMUTH || key == KEY_ELEVATION)
-    out->of_picture = key == KEY_SIZE ? "--size" : key == KEY_AZIMUTH ? "--azimuth" : "--elevation";
-  if (key == KEY_AZIMUTH || key == KEY_ELEVATION)
-    out->of_view = out->of_picture;
-  if (key == 'r' || key == KEY_COLOR || key == KEY_LABELS)
-    out->of_mesh = key == 'r' ? "--resolution" : key == KEY_COLOR ? "--color" : "--labels";
-  switch (key) {
-  case KEY_COLOR:
-    return read_color(cli, out, value);
-  case KEY_LABELS:
-    return read_labels(cli, out, value);
-  case 'o':
-    out->output = value;
+static int take_slice(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  if (read_slice(member, value))
     return CLI_END;
-  case 'r':
-    if (!cli_read_integer(&out->resolution, value, 1, 2048))
-      return cli_usage(cli, "--resolution '%s' is not a number from 1 to 2048", value);
-    return CLI_END;
-  case KEY_SIZE:
-    if (!read_size(picture, value))
-      return cli_usage(cli, "--size '%s' is not WxH, each from 1 to 16384", value);
-    return CLI_END;
-  case KEY_SLICE:
-    if (!read_slice(picture, value))
-      return cli_usage(cli, "--slice '%s' is not x=S, y=S or z=S with S from 0 to 1", value);
-    return CLI_END;
-  case KEY_AZIMUTH:
-    if (!cli_read_number(&picture->azimuth, value))
-      return cli_usage(cli, "--azimuth '%s' is not a number of degrees", value);
-    return CLI_END;
-  case KEY_ELEVATION:
-    if (!cli_read_number(&picture->elevation, value) || picture->elevation < -90 || picture->elevation > 90)
-      return cli_usage(cli, "--elevation '%s' is not a number of degrees from -90 to 90", value);
-    return CLI_END;
-  case CLI_KEY_THRESHOLD:
-  case CLI_KEY_BELOW:
-    return cli_threshold_read(cli, &out->threshold, key, value);
-  default:
-    result = cli_choose(cli, &choice, "up", value, axes);
-    picture->up = choice + 1;
-    return result;
-  }
+  return cli_usage(cli, "--%s '%s' is not x=S, y=S or z=S with S from 0 to 1", option->name, value);
 }
+
+static int take_azimuth(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  if (cli_read_number(member, value))
+    return CLI_END;
+  return cli_usage(cli, "--%s '%s' is not a number of degrees", option->name, value);
+}
+
+static int take_elevation(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  double *elevation = member;
+  if (cli_read_number(elevation, value) && *elevation >= -90 && *elevation <= 90)
+    return CLI_END;
+  return cli_usage(cli, "--%s '%s' is not a number of degrees from -90 to 90", option->name, value);
+}
+
+static const cli_option known_options[] = {
+    {'o', "output", "FILE", "picture (.png), or page for a browser (.html), to write",
+     CLI_TEXT(request, output)},
+    {'r', "resolution", "N", "voxels along the longest side of a mesh [128]",
+     CLI_NUMBER(request, resolution, 1, 2048)},
+    {0, "color", "mesh|position|part|noise", "colours of a mesh's voxels, as for voxelize",
+     CLI_VALUE(take_color, request, colors)},
+    {0, "labels", "part|group|material", "labels of a mesh's voxels, as for voxelize",
+     CLI_CHOICE(request, labels.by, cli_label_kinds)},
+    {0, "slice", "x|y|z=S", "the cross-section at a share S, from 0 to 1, of the grid along an axis",
+     CLI_VALUE(take_slice, request, picture)},
+    {0, "size", "WxH", "pixels, each from 1 to 16384 [800x600]", CLI_VALUE(take_size, request, picture)},
+    {0, "azimuth", "DEGREES", "direction to look from, about the up axis [30]",
+     CLI_VALUE(take_azimuth, request, picture.azimuth)},
+    {0, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]",
+     CLI_VALUE(take_elevation, request, picture.elevation)},
+    {0, "up", "x|y|z", "axis that points up [by the format of a mesh, else z]",
+     CLI_CHOICE_FROM(1, request, picture.up, cli_axes)},
+    CLI_OPTIONS_THRESHOLD(request),
+    CLI_OPTIONS_READ,
+    CLI_OPTIONS_END};
 
 static int read_arguments(cli_run *cli, request *out) {
-  const char *value;
-  int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END)
-    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
-      return CLI_STOP;
+  static const char *const of_view[] = {"azimuth", "elevation", NULL};
+  static const char *const of_picture[] = {"slice", "size", "azimuth", "elevation", NULL};
+  if (cli_read_options(cli, out) == CLI_STOP)
+    return CLI_STOP;
+  const char *view = cli_last_given(cli, of_view), *picture = cli_last_given(cli, of_picture);
+  out->has_colors = cli_is_given(cli, "color");
+  out->has_labels = cli_is_given(cli, "labels");
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid or mesh is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
@@ -164,10 +135,10 @@ static int read_arguments(cli_run *cli, request *out) {
   if ((out->has_colors || out->has_labels) && out->resolution > VALUES_RESOLUTION_MAX)
     return cli_usage(cli, "colours and labels are shown at up to %d voxels; lower --resolution",
                      VALUES_RESOLUTION_MAX);
-  if (out->of_view && out->picture.slice_axis != 0)
-    return cli_usage(cli, "%s is for a view from outside; --slice is seen along its axis", out->of_view);
-  if (out->is_page && out->of_picture)
-    return cli_usage(cli, "%s is for pictures (.png); a page is turned by hand", out->of_picture);
+  if (view && out->picture.slice_axis != 0)
+    return cli_usage(cli, "--%s is for a view from outside; --slice is seen along its axis", view);
+  if (out->is_page && picture)
+    return cli_usage(cli, "--%s is for pictures (.png); a page is turned by hand", picture);
   cli_writes(cli, "-o", out->output, false);
   return cli_check_names(cli);
 }
@@ -325,17 +296,18 @@ static int check_page(cli_run *cli, const char *path) {
   return CLI_DONE;
 }
 
-/** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
+/** Reads a grid or a mesh, as the name tells; where it does not tell, tries a grid first. */
 static int read_input(cli_run *cli, subject *out, request *given) {
-  const char *path = given->input;
+  static const char *const of_meshes[] = {"resolution", "color", "labels", NULL};
+  const char *path = given->input, *of_mesh = cli_last_given(cli, of_meshes);
   if (is_named(path, cli_mesh_formats))
     return voxelize(cli, out, given);
   if (given->is_page && check_page(cli, path) != CLI_DONE)
     return CLI_FAILED;
   vxm_status status = cli_values_read(cli, &out->values, path);
-  if (status == VXM_OK && given->of_mesh)
-    return cli_fail_text(cli, "%s: %s is for meshes; this has its voxels", cli_shown(path, "<stdin>"),
-                         given->of_mesh);
+  if (status == VXM_OK && of_mesh)
+    return cli_fail_text(cli, "%s: --%s is for meshes; this has its voxels", cli_shown(path, "<stdin>"),
+                         of_mesh);
   if (status == VXM_OK)
     return CLI_DONE;
   bool maybe_mesh = status == VXM_ERROR_FORMAT && strcmp(path, "-") != 0;
@@ -368,7 +340,7 @@ static vxm_status write_page(cli_run *cli, const request *given, const subject *
                         &cli->error);
 }
 
-/** Bits as they are, or numbers by the threshold, or else by what they are. */
+/** Draws set voxels; numbers by the threshold where one is given, else in the way of their kind. */
 static vxm_status draw(cli_run *cli, const request *given, const cli_values *values) {
   bool is_given = cli_threshold_given(&given->threshold);
   if (values->grid)

@@ -19,16 +19,6 @@ static int read_like(cli_run *cli, vxm_space *out, const char *path) {
   return CLI_DONE;
 }
 
-static vxm_grid_write_options write_options(const voxelize_request *given) {
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
-  options.format = given->format;
-  options.keep_polygons = given->keep_polygons;
-  options.keep_contacts = given->keep_contacts;
-  options.blocks = given->style.blocks;
-  options.up = given->style.up;
-  return options;
-}
-
 /** The most voxels that the model's box has along an axis, in parts. */
 static double voxels_along(const vxm_mesh *mesh, const vxm_space *space) {
   const double *at = vxm_mesh_vertices(mesh);
@@ -43,7 +33,7 @@ static double voxels_along(const vxm_mesh *mesh, const vxm_space *space) {
   return most;
 }
 
-/** A grid of another model's units, most often. */
+/** Warns where the model fills few voxels of the grid of --like: most often that is in other units. */
 static void warn_of_coarse_like(cli_run *cli, const voxelize_request *given,
                                 const voxelize_outcome *results) {
   const double few = 3;
@@ -60,10 +50,10 @@ static void warn_of_model(cli_run *cli, const voxelize_request *given, const vox
   for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
     cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
   warn_of_coarse_like(cli, given, results);
-  cli_warn_lattice(cli, given->output, given->format, &results->space);
+  cli_warn_lattice(cli, given->output, given->write.format, &results->space);
 }
 
-/** Written beside the grid are its confidence and coordinates: it is made as a whole. */
+/** Makes the grid as a whole, as its confidence and coordinates are made of it. */
 static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_outcome *results,
                        vxm_model *model) {
   double start = cli_clock();
@@ -72,9 +62,8 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
   if (status == VXM_OK)
     status = vxm_model_voxelize(grid, &results->voxelize, model, NULL, &cli->error);
   double made = cli_clock();
-  vxm_grid_write_options options = write_options(given);
   if (status == VXM_OK)
-    status = vxm_grid_write(grid, given->output, &options, &cli->error);
+    status = vxm_grid_write(grid, given->output, &given->write, &cli->error);
   results->voxelize_ms += made - start;
   if (status == VXM_OK) {
     if (given->confidence)
@@ -92,7 +81,6 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
 
 static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_outcome *results,
                         vxm_model *model) {
-  vxm_grid_write_options options = write_options(given);
   vxm_sparse *sparse;
   double start = cli_clock();
   if (vxm_model_sparse(&sparse, &results->voxelize, model, &results->space, NULL, &cli->error) != VXM_OK)
@@ -101,7 +89,7 @@ static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_ou
   results->sparse.nodes = vxm_sparse_nodes(sparse);
   results->sparse.bytes = vxm_sparse_bytes(sparse);
   double made = cli_clock();
-  vxm_status status = vxm_sparse_write(sparse, given->output, &options, &cli->error);
+  vxm_status status = vxm_sparse_write(sparse, given->output, &given->write, &cli->error);
   results->voxelize_ms += made - start;
   if (status == VXM_OK) {
     if (given->coords)
@@ -116,13 +104,12 @@ static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_ou
 }
 
 static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *results, vxm_model *model) {
-  vxm_grid_write_options options = write_options(given);
   double start = cli_clock();
-  vxm_status status =
-      cli_field_wanted(&given->field)
-          ? cli_field_write(cli, &given->field, &results->voxelize, model, &results->space, given->output,
-                            given->format)
-          : vxm_model_write(&results->voxelize, model, &results->space, given->output, &options, &cli->error);
+  vxm_status status = cli_field_wanted(&given->field)
+                          ? cli_field_write(cli, &given->field, &results->voxelize, model, &results->space,
+                                            given->output, given->write.format)
+                          : vxm_model_write(&results->voxelize, model, &results->space, given->output,
+                                            &given->write, &cli->error);
   if (status != VXM_OK)
     return cli_fail(cli);
   results->write_ms = results->voxelize.write_ms;
@@ -141,11 +128,11 @@ static const uint64_t LARGE_GRID = UINT64_C(1) << 26;
 static bool takes_octree(const voxelize_request *given, const voxelize_outcome *results) {
   if (given->sparse)
     return true;
-  return given->coords && !given->confidence && !given->engine.name && voxelize_is_sliced(given->format) &&
-         results->estimate.grid_bytes >= LARGE_GRID;
+  return given->coords && !given->confidence && !given->engine.name &&
+         voxelize_is_sliced(given->write.format) && results->estimate.grid_bytes >= LARGE_GRID;
 }
 
-/** What a grid takes: rows are whole words. */
+/** The memory of a grid, whose rows are whole words. */
 static uint64_t bytes_of_bits(const vxm_space *space) {
   return (uint64_t)(space->dims[0] + 63) / 64 * 8 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
 }
@@ -153,7 +140,6 @@ static uint64_t bytes_of_bits(const vxm_space *space) {
 /** Makes the model, tells the memory it will take, and, unless only that is wanted, writes the grid. */
 static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
   const vxm_mesh *mesh = results->input.mesh;
-  vxm_grid_write_options options = write_options(given);
   vxm_model *model = NULL;
   double start = cli_clock();
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->space, &cli->error);
@@ -166,10 +152,10 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
     results->estimate.grid_bytes = bytes_of_bits(&results->space);
   else if (status == VXM_OK && cli_field_wanted(&given->field))
     status = cli_field_estimate(cli, &given->field, &results->estimate, model, &results->space, given->output,
-                                given->format);
+                                given->write.format);
   else if (status == VXM_OK)
-    status =
-        vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
+    status = vxm_model_estimate(&results->estimate, model, &results->space, given->output, &given->write,
+                                &cli->error);
   results->octree = takes_octree(given, results);
   results->voxelize_ms = cli_clock() - start;
   int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
@@ -194,9 +180,11 @@ static int make_baseline(cli_run *cli, voxelize_request *given, voxelize_outcome
 }
 
 static int run(cli_run *cli) {
-  voxelize_request given = {.repair = VXM_REPAIR_OPTIONS_INIT,
+  voxelize_request given = {.baseline = -1,
+                            .repair = VXM_REPAIR_OPTIONS_INIT,
                             .space = VXM_SPACE_OPTIONS_INIT,
                             .voxelize = VXM_VOXELIZE_OPTIONS_INIT,
+                            .write = VXM_GRID_WRITE_OPTIONS_INIT,
                             .field = CLI_FIELD_INIT,
                             .engine = CLI_ENGINE_INIT};
   if (voxelize_read_arguments(cli, &given) == CLI_STOP)
@@ -215,7 +203,7 @@ static int run(cli_run *cli) {
   if (cli_read_divided(cli, &results.input, given.input, given.field.label_options.by, repair) != CLI_DONE)
     return CLI_FAILED;
   cli_color_take(&given.field, &results.input);
-  int status = given.baseline_name ? make_baseline(cli, &given, &results) : make_file(cli, &given, &results);
+  int status = given.baseline >= 0 ? make_baseline(cli, &given, &results) : make_file(cli, &given, &results);
   vxm_mesh_destroy(results.input.mesh);
   vxm_mesh_destroy(results.input.as_read);
   if (status == CLI_DONE) {

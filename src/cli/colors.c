@@ -30,16 +30,16 @@ static char *read_source(cli_run *cli, const char *path) {
   return NULL;
 }
 
-int cli_color_read(cli_run *cli, cli_field *field, const char *value) {
+int cli_take_color(cli_run *cli, const cli_option *option, const char *value, void *member) {
   static const char *const choices[] = {"noise", "position", "part", "mesh", NULL};
   static const vxm_color_by by[] = {VXM_COLOR_NOISE, VXM_COLOR_POSITION, VXM_COLOR_PART, VXM_COLOR_MESH};
+  cli_field *field = member;
   int choice = cli_read_choice(value, choices);
   char list[CLI_LIST_MAX];
   bool is_function = cli_is_extension(value, "frag");
   if (choice < 0 && !is_function && !strchr(value, '.'))
-    return cli_usage(cli, "--color '%s' is none of %s, and no FILE.frag or FILE.nrrd", value,
+    return cli_usage(cli, "--%s '%s' is none of %s, and no FILE.frag or FILE.nrrd", option->name, value,
                      cli_list(list, choices));
-  field->color = true;
   field->color_name = value;
   field->color_options.by = choice >= 0 ? by[choice] : is_function ? VXM_COLOR_GLSL : VXM_COLOR_VOLUME;
   cli->read.colors = field->color_options.by == VXM_COLOR_MESH;

@@ -6,9 +6,10 @@
 #include "cli/cli.h"
 
 typedef struct combine_request {
-  const char *output, *format;
-  bool force, sparse, keep_polygons, keep_contacts;
+  const char *output;
+  bool sparse;
   vxm_threshold_options threshold;
+  vxm_grid_write_options write;
 } combine_request;
 
 /** A set of voxels, or values, as one of the three. */

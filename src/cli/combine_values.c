@@ -73,8 +73,8 @@ int combine_read(cli_run *cli, combine_operand *out, const combine_request *give
 
 /* ---- Labels ---- */
 
-/** The numbers of labels by their names, the lowest of those that share one; those without a name are
- * nobody's. */
+/** An object with the number of each label name: the lowest where several labels share it. Labels without a
+ * name are left out. */
 static json_t *numbers_of(const vxm_field *field) {
   json_t *numbers = json_object();
   for (int64_t label = vxm_field_label_count(field); label > 0; label--)
@@ -132,7 +132,8 @@ static void tell_renumbered(const cli_run *cli, const json_t *renumbered) {
     cli_row(cli, "", "... and %zu more (-v shows all)", count - shown);
 }
 
-/** What is told of values beside their range. @param names a field with the table of labels */
+/** Completes the report of values with their labels, and ends the run. @param names a field with the table of
+ * labels */
 static int finish(cli_run *cli, const combine_request *given, const vxm_field *names, json_t *report,
                   const json_t *renumbered) {
   if (vxm_field_kind_of(names) == VXM_FIELD_LABELS) {
@@ -144,22 +145,20 @@ static int finish(cli_run *cli, const combine_request *given, const vxm_field *n
     if (vxm_field_label_count(names) > 0)
       cli_row(cli, "labels", "%" PRId64, vxm_field_label_count(names));
     tell_renumbered(cli, renumbered);
-    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
   }
   return cli_finish(cli, report);
 }
 
 int combine_write_field(cli_run *cli, const combine_request *given, const vxm_field *field, json_t *report,
                         const json_t *renumbered) {
-  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
   const cli_values values = {NULL, (vxm_field *)field};
-  write.format = given->format;
-  if (vxm_field_write(field, given->output, &write, &cli->error) != VXM_OK) {
+  if (vxm_field_write(field, given->output, &given->write, &cli->error) != VXM_OK) {
     json_decref(report);
     return cli_fail(cli);
   }
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, vxm_field_space(field));
+  cli_warn_lattice(cli, given->output, given->write.format, vxm_field_space(field));
   json_object_set_new(report, "grid", cli_json_space(vxm_field_space(field)));
   cli_values_json(report, &values, false);
   if (cli_summary(cli)) {
@@ -172,7 +171,7 @@ int combine_write_field(cli_run *cli, const combine_request *given, const vxm_fi
 /* ---- Octree files ---- */
 
 bool combine_are_octrees(const cli_run *cli, const combine_request *given) {
-  bool yes = strcmp(given->format, "octree") == 0 && strcmp(given->output, "-") != 0 &&
+  bool yes = strcmp(given->write.format, "octree") == 0 && strcmp(given->output, "-") != 0 &&
              !cli_threshold_given(&given->threshold);
   for (int i = 0; i < cli->argument_count; i++)
     yes = yes && cli_is_extension(cli->arguments[i], "octree");
@@ -231,7 +230,7 @@ static int tell_file(cli_run *cli, const combine_request *given, const vxm_space
   json_object_set_new(report, "grid", cli_json_space(space));
   json_object_set_new(report, "values", values);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format, space);
+  cli_warn_lattice(cli, given->output, given->write.format, space);
   if (cli_summary(cli)) {
     cli_rows_space(cli, space);
     cli_row(cli, "values", "%s%s%s", kind == VXM_FIELD_NUMBERS ? "" : vxm_field_kind_name(kind),

@@ -5,12 +5,6 @@
 #include <inttypes.h>
 #include <string.h>
 
-int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value) {
-  if (!cli_read_integer(&defects->list, value, 1, 1000000))
-    return cli_usage(cli, "--list '%s' is not a number from 1 to 1000000", value);
-  return CLI_END;
-}
-
 int cli_defects_check(cli_run *cli, const cli_defects *defects) {
   const char *locate = defects->locate;
   if (!locate)
@@ -101,6 +95,6 @@ void cli_defects_print(const cli_run *cli, const json_t *list) {
   }
 }
 
-int cli_defects_check_file(cli_run *cli, const cli_defects *defects, bool is_forced) {
-  return defects->locate ? cli_check_surface_file(cli, defects->locate, "ply", is_forced) : CLI_END;
+int cli_defects_check_file(cli_run *cli, const cli_defects *defects) {
+  return defects->locate ? cli_check_surface_file(cli, defects->locate, "ply") : CLI_END;
 }

@@ -45,9 +45,11 @@ const char *cli_verdict(char text[CLI_SENTENCE], const vxm_census *census, const
 
 /* ---- defects.c: where, for info and repair ---- */
 
+enum { CLI_LISTED_MAX = 1000000 };
+
 typedef struct cli_defects {
   const char *locate; /**< .ply to show them in, or NULL */
-  int64_t list;       /**< list so many of each kind in the report; 0 = none */
+  int64_t list;       /**< list so many of each kind in the report, up to CLI_LISTED_MAX; 0 = none */
   bool intersections; /**< self-intersections too */
 } cli_defects;
 
@@ -56,12 +58,10 @@ typedef struct cli_found {
   int64_t intersections; /**< pairs of faces; -1 = not looked for */
 } cli_found;
 
-/** The argument of --list: CLI_END or CLI_STOP. */
-int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value);
 /** CLI_STOP if --locate has a wrong name. */
 int cli_defects_check(cli_run *cli, const cli_defects *defects);
 /** CLI_STOP if --locate would replace a file. */
-int cli_defects_check_file(cli_run *cli, const cli_defects *defects, bool is_forced);
+int cli_defects_check_file(cli_run *cli, const cli_defects *defects);
 /** Prints the list that cli_defects_show has made; NULL = none. */
 void cli_defects_print(const cli_run *cli, const json_t *list);
 /** Finds, lists, counts and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */

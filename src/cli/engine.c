@@ -7,62 +7,33 @@
 const char *const cli_cl_methods[] = {"auto", "triangles", "tiles", NULL};
 const char *const cli_gl_methods[] = {"columns", "slices", "tetra-vertex", NULL};
 
-static int read_displacement(cli_run *cli, cli_engine *out, const char *value) {
+int cli_take_displacement(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  vxm_engine_options *options = member;
   char text[64];
   const char *comma = strchr(value, ',');
   int64_t seed = 0;
   size_t length = comma ? (size_t)(comma - value) : strlen(value);
   snprintf(text, sizeof text, "%.*s", (int)(length < sizeof text ? length : sizeof text), value);
-  if (!cli_read_number(&out->options.displacement, text) || out->options.displacement < 0 ||
+  if (!cli_read_number(&options->displacement, text) || options->displacement < 0 ||
       (comma && !cli_read_integer(&seed, comma + 1, 0, INT64_MAX)))
-    return cli_usage(cli, "--gl-displace '%s' is not D or D,SEED: voxels, 0 or more, and a whole number",
+    return cli_usage(cli, "--%s '%s' is not D or D,SEED: voxels, 0 or more, and a whole number", option->name,
                      value);
-  out->options.seed = (uint64_t)seed;
+  options->seed = (uint64_t)seed;
   return CLI_END;
-}
-
-int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value) {
-  static const char *const axes[] = {"x", "y", "z", NULL};
-  int choice = 0, result;
-  switch (key) {
-  case CLI_KEY_ENGINE:
-    out->name = value;
-    return CLI_END;
-  case CLI_KEY_DEVICE:
-    out->options.device = value;
-    return CLI_END;
-  case CLI_KEY_CL_METHOD:
-    out->is_cl_tuned = true;
-    result = cli_choose(cli, &choice, "cl-method", value, cli_cl_methods);
-    out->options.cl_method = (vxm_cl_method)choice;
-    return result;
-  case CLI_KEY_GL_METHOD:
-    out->is_tuned = true;
-    result = cli_choose(cli, &choice, "gl-method", value, cli_gl_methods);
-    out->options.gl_method = (vxm_gl_method)choice;
-    return result;
-  case CLI_KEY_GL_AXIS:
-    out->is_slicing = true;
-    result = cli_choose(cli, &choice, "gl-axis", value, axes);
-    out->options.slice_axis = choice;
-    return result;
-  default:
-    out->is_slicing = true;
-    return read_displacement(cli, out, value);
-  }
 }
 
 int cli_engine_check(cli_run *cli, const cli_engine *engine) {
   bool is_auto = engine->name && strcmp(engine->name, "auto") == 0;
   bool is_opencl = engine->name && strncmp(engine->name, "opencl", 6) == 0;
+  bool is_slicing = cli_is_given(cli, "gl-axis") || cli_is_given(cli, "gl-displace");
   bool is_opengl = engine->name && strncmp(engine->name, "opengl", 6) == 0;
-  if (!is_opencl && !is_auto && (engine->options.device || engine->is_cl_tuned))
+  if (!is_opencl && !is_auto && (engine->options.device || cli_is_given(cli, "cl-method")))
     return cli_usage(cli, "--device and --cl-method go with --engine opencl");
   if (is_opencl && engine->options.device && strcmp(engine->name, "opencl") != 0)
     return cli_usage(cli, "--engine %s names a device already; leave out --device", engine->name);
-  if (!is_opengl && (engine->is_tuned || engine->is_slicing))
+  if (!is_opengl && (is_slicing || cli_is_given(cli, "gl-method")))
     return cli_usage(cli, "options that begin with --gl go with --engine opengl");
-  if (engine->is_slicing && engine->options.gl_method == VXM_GL_COLUMNS)
+  if (is_slicing && engine->options.gl_method == VXM_GL_COLUMNS)
     return cli_usage(cli, "--gl-axis and --gl-displace go with --gl-method slices or tetra-vertex");
   return CLI_END;
 }

@@ -11,16 +11,14 @@ extern const char *const cli_cl_methods[], *const cli_gl_methods[];
 typedef struct cli_engine {
   const char *name; /**< NULL = not given */
   vxm_engine_options options;
-  bool is_cl_tuned;          /**< options of OpenCL were given */
-  bool is_tuned, is_slicing; /**< options of OpenGL, and of its slices, were given */
-  vxm_engine *engine;        /**< made by cli_engine_open; NULL = the CPU, as nothing was asked for */
+  vxm_engine *engine; /**< made by cli_engine_open; NULL = the CPU, as nothing was asked for */
 } cli_engine;
 
 #define CLI_ENGINE_INIT \
-  { NULL, VXM_ENGINE_OPTIONS_INIT, false, false, false, NULL }
+  { NULL, VXM_ENGINE_OPTIONS_INIT, NULL }
 
-/** Takes the value of one of CLI_OPTIONS_ENGINE. */
-int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value);
+/** Of --gl-displace, into vxm_engine_options. */
+cli_reader cli_take_displacement;
 /** CLI_STOP if the options contradict each other. */
 int cli_engine_check(cli_run *cli, const cli_engine *engine);
 /** Makes the engine, if one was named; a failure is in cli->error. */

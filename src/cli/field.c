@@ -20,50 +20,22 @@ bool cli_field_wanted(const cli_field *field) {
 
 /* ---- Options ---- */
 
-int cli_field_read_coverage(cli_run *cli, cli_field *field, const char *value) {
+const char *const cli_scalars[] = {"float32", "uint8", NULL};
+const char *const cli_signs[] = {"signed", "unsigned", NULL};
+
+int cli_take_subdivision(cli_run *cli, const cli_option *option, const char *value, void *member) {
   static const char *const choices[] = {"2", "4", "8", NULL};
   int choice;
-  if (cli_choose(cli, &choice, "coverage", value, choices) == CLI_STOP)
+  if (cli_choose(cli, &choice, option->name, value, choices) == CLI_STOP)
     return CLI_STOP;
-  field->coverage = true;
-  field->coverage_options.subdivision = 2 << choice;
+  *(int *)member = 2 << choice;
   return CLI_END;
 }
 
-int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value) {
-  static const char *const choices[] = {"float32", "uint8", NULL};
-  int choice;
-  if (cli_choose(cli, &choice, "scalar", value, choices) == CLI_STOP)
-    return CLI_STOP;
-  field->scalar = true;
-  field->coverage_options.scalar = choice == 0 ? VXM_FLOAT32 : VXM_UINT8;
-  return CLI_END;
-}
-
-int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value) {
-  static const char *const choices[] = {"signed", "unsigned", NULL};
-  int choice;
-  if (cli_choose(cli, &choice, "distance", value, choices) == CLI_STOP)
-    return CLI_STOP;
-  field->distance = true;
-  field->distance_options.is_unsigned = choice == 1;
-  return CLI_END;
-}
-
-int cli_field_read_band(cli_run *cli, cli_field *field, const char *value) {
-  field->band = true;
-  if (!cli_read_number(&field->distance_options.band, value) || field->distance_options.band < 0)
-    return cli_usage(cli, "--band '%s' is not a number of voxels from 0 on", value);
-  return CLI_END;
-}
-
-int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value) {
-  static const char *const choices[] = {"part", "group", "material", NULL};
-  int choice;
-  if (cli_choose(cli, &choice, "labels", value, choices) == CLI_STOP)
-    return CLI_STOP;
-  field->labels = true;
-  field->label_options.by = (vxm_label_by)choice;
+int cli_take_band(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  double *band = member;
+  if (!cli_read_number(band, value) || *band < 0)
+    return cli_usage(cli, "--%s '%s' is not a number of voxels from 0 on", option->name, value);
   return CLI_END;
 }
 
@@ -74,11 +46,11 @@ int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is
                                        : "color";
   if (field->coverage + field->distance + field->labels + field->color > 1)
     return cli_usage(cli, "--coverage, --distance, --labels and --color exclude each other");
-  if (field->scalar && !field->coverage)
+  if (cli_is_given(cli, "scalar") && !field->coverage)
     return cli_usage(cli, "--scalar goes with --coverage");
   if (field->color_options.average && !(field->color && field->color_options.by == VXM_COLOR_MESH))
     return cli_usage(cli, "--color-average goes with --color mesh");
-  if (field->band && !field->distance)
+  if (cli_is_given(cli, "band") && !field->distance)
     return cli_usage(cli, "--band goes with --distance");
   if (!cli_field_wanted(field))
     return CLI_END;

@@ -6,9 +6,9 @@
 #include "cli/repair_common.h"
 
 typedef struct cli_field {
-  bool coverage, scalar, distance, band, labels, color; /**< which options were given */
-  const char *color_name;                               /**< a function that is built in, or a file */
-  const char *color_mesh;                               /**< the mesh that gives the colours, for messages */
+  bool coverage, distance, labels, color; /**< which options were given */
+  const char *color_name;                 /**< a function that is built in, or a file */
+  const char *color_mesh;                 /**< the mesh that gives the colours, for messages */
   vxm_coverage_options coverage_options;
   vxm_distance_options distance_options;
   vxm_label_options label_options;
@@ -31,18 +31,14 @@ typedef struct cli_field {
 cli_formats cli_field_formats(const cli_field *field);
 /** Whether a number per voxel is wanted rather than a grid. */
 bool cli_field_wanted(const cli_field *field);
-/* The arguments of --coverage, --scalar, --distance, --band and --labels: CLI_END or CLI_STOP. */
-int cli_field_read_coverage(cli_run *cli, cli_field *field, const char *value);
-int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value);
-int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value);
-int cli_field_read_band(cli_run *cli, cli_field *field, const char *value);
-int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value);
+/** Choices of --scalar (the first is VXM_FLOAT32), --distance and --labels; NULL ends each list. */
+extern const char *const cli_scalars[], *const cli_signs[], *const cli_label_kinds[];
+/** Of --coverage 2|4|8, into an int; of --band, into a double; of --color, into a cli_field (colors.c). */
+cli_reader cli_take_subdivision, cli_take_band, cli_take_color;
 /** Tell what a mesh looks like that was read with its colours; nothing where there is nothing (look.c). */
 void cli_look_json(json_t *report, const vxm_mesh *mesh);
 void cli_look_print(const cli_run *cli, const vxm_mesh *mesh);
 
-/** The argument of --color (colors.c). */
-int cli_color_read(cli_run *cli, cli_field *field, const char *value);
 /** Takes the mesh that gives the colours. */
 void cli_color_take(cli_field *field, const cli_input *input);
 /** Says of the mesh what it lacks: puts its name before the error. */

@@ -199,7 +199,7 @@ static const char *name_of(char out[PATH_SIZE], const cli_written *output, int k
              : NULL;
 }
 
-static bool meet(const cli_written *a, const cli_written *b) {
+static bool share_a_name(const cli_written *a, const cli_written *b) {
   char a_name[PATH_SIZE], b_name[PATH_SIZE];
   for (int k = 0; k < 4; k++) {
     const char *first = name_of(a_name, a, k / 2), *second = name_of(b_name, b, k % 2);
@@ -209,7 +209,7 @@ static bool meet(const cli_written *a, const cli_written *b) {
   return false;
 }
 
-/** Whoever reads it second finds nothing there. */
+/** Standard input can be read once only. */
 static int check_standard_input(cli_run *cli) {
   int inputs = 0;
   for (int i = 0; i < cli->argument_count; i++)
@@ -232,7 +232,7 @@ int cli_check_names(cli_run *cli) {
         return CLI_STOP;
     }
     for (int j = 0; j < i; j++)
-      if (meet(output, &cli->writes[j]))
+      if (share_a_name(output, &cli->writes[j]))
         return cli_usage(cli, "%s and %s name the same file", output->option, cli->writes[j].option);
   }
   return CLI_END;

@@ -4,7 +4,7 @@
 
 #include <inttypes.h>
 
-static const char *const kinds[] = {"part", "group", "material"};
+const char *const cli_label_kinds[] = {"part", "group", "material", NULL};
 
 static json_t *table_of(const vxm_model *model) {
   json_t *table = json_array();
@@ -30,7 +30,7 @@ vxm_status cli_labels_write(cli_run *cli, cli_field *field, vxm_model *model, co
 void cli_labels_json(json_t *report, const cli_field *field) {
   const vxm_label_report *labels = &field->label_report;
   json_t *object = json_object();
-  json_object_set_new(object, "by", json_string(kinds[field->label_options.by]));
+  json_object_set_new(object, "by", json_string(cli_label_kinds[field->label_options.by]));
   json_object_set_new(object, "contested", json_integer(labels->contested));
   json_object_set_new(object, "unassigned", json_integer(labels->unassigned));
   json_object_set(object, "table", field->label_table);
@@ -62,7 +62,7 @@ void cli_labels_summarize(const cli_run *cli, const cli_field *field) {
   cli_row(cli, "labels",
           "%" PRId64 " by %s%s; the nearest face decides %" PRId64 " voxels that several claim, and "
           "%" PRId64 " that none does%s",
-          labels->labels, kinds[field->label_options.by],
+          labels->labels, cli_label_kinds[field->label_options.by],
           field->label_options.by == VXM_LABEL_PART ? ", connected pieces as in 'voxmend info'" : "",
           labels->contested, labels->unassigned,
           field->label_options.by == VXM_LABEL_PART ? "" : "; and between patches of a surface");

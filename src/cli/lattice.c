@@ -22,7 +22,7 @@ static void warn_of_move(cli_run *cli, const char *path, const vxm_space *space)
              cli_shown(path, "<stdout>"), move[0], move[1], move[2]);
 }
 
-/** What voxmend reads back lies as it was, by the metadata; nobody else knows these. */
+/** For formats of cubes. voxmend reads the voxel size back from its metadata, other programs do not. */
 static void warn_of_stretch(cli_run *cli, const char *path, const char *format, const vxm_space *space) {
   const double *size = space->voxel_size;
   if (fabs(size[1] - size[0]) > EVEN * size[0] || fabs(size[2] - size[0]) > EVEN * size[0])

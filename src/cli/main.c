@@ -26,8 +26,8 @@ static int refuse(const char *name) {
   return none.status;
 }
 
-/** What one step frees the next takes. Given back to the system and asked for again, each page would cost as
- * much as a step that fills it. */
+/** Keeps freed memory for the next step. A page that is given back to the system and asked for again costs as
+ * much time as a step that fills it. */
 static void keep_memory(void) {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);

@@ -1,29 +1,32 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Reading the command line: one table per command serves both getopt and the help text. */
+/** Reading the command line: one table per command serves getopt, the help text and the reading. */
 #include "cli/cli.h"
 
-#include <errno.h>
 #include <getopt.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { KEY_JSON = CLI_KEY_COMMON, KEY_REPORT, KEY_THREADS, KEY_MEMLIMIT, KEY_PROGRESS, KEY_STRICT };
+static cli_reader show_help, take_report, take_progress;
 
 static const cli_option common_options[] = {
-    {KEY_JSON, "json", NULL, "print the report as JSON on standard output instead of the summary"},
-    {KEY_REPORT, "report", "FILE.json", "write the report as JSON into a file too"},
-    {KEY_THREADS, "threads", "N", "threads to work with, 1 to 256 [one per processor]"},
-    {KEY_MEMLIMIT, "memlimit", "SIZE",
+    {0, "json", NULL, "print the report as JSON on standard output instead of the summary",
+     CLI_RUN_VALUE(cli_take_flag, json)},
+    {0, "report", "FILE.json", "write the report as JSON into a file too",
+     CLI_RUN_VALUE(take_report, report)},
+    {0, "threads", "N", "threads to work with, 1 to 256 [one per processor]",
+     CLI_RUN_VALUE(cli_take_number, limits.threads, .min = 1, .max = 256)},
+    {0, "memlimit", "SIZE",
      "fail rather than hold more memory than this, in bytes\nor with a binary suffix: 512M, 4G [what the "
-     "machine has]"},
-    {'q', "quiet", NULL, "print neither the summary nor warnings"},
-    {'v', "verbose", NULL, "print more: tags, passes that changed nothing, threads and memory"},
-    {KEY_PROGRESS, "progress", "WHEN", "auto (where standard error is a terminal), always or never [auto]"},
-    {KEY_STRICT, "strict", NULL, "exit with status 3 if there were warnings"},
-    {'h', "help", NULL, "show this help"},
-    {0, NULL, NULL, NULL}};
+     "machine has]",
+     CLI_RUN_VALUE(cli_take_size, limits.memory_limit)},
+    {'q', "quiet", NULL, "print neither the summary nor warnings", CLI_RUN_VALUE(cli_take_flag, quiet)},
+    {'v', "verbose", NULL, "print more: tags, passes that changed nothing, threads and memory",
+     CLI_RUN_VALUE(cli_take_flag, verbose)},
+    {0, "progress", "WHEN", "auto (where standard error is a terminal), always or never [auto]",
+     CLI_RUN_VALUE(take_progress, progress)},
+    {0, "strict", NULL, "exit with status 3 if there were warnings", CLI_RUN_VALUE(cli_take_flag, strict)},
+    {'h', "help", NULL, "show this help", {.read = show_help, .is_of_run = true}},
+    CLI_OPTIONS_END};
 
 const char *const cli_mesh_formats[] = {"off", "obj", "stl", "ply", NULL};
 
@@ -52,8 +55,8 @@ enum { HELP_COLUMN = 30 };
 static void print_option(const cli_option *option) {
   char text[96];
   char letter[8] = "    ";
-  if (option->key < CLI_KEY_COMMON)
-    snprintf(letter, sizeof letter, "-%c, ", option->key);
+  if (option->letter)
+    snprintf(letter, sizeof letter, "-%c, ", option->letter);
   int used = snprintf(text, sizeof text, "  %s--%s%s%s", letter, option->name, option->argument ? " " : "",
                       option->argument ? option->argument : "");
   if (used < HELP_COLUMN)
@@ -68,7 +71,7 @@ static void print_option(const cli_option *option) {
   putchar('\n');
 }
 
-/** Whether a command has an option of its own by the name of a common one, which then stands back. */
+/** Whether a command has an option of its own by the name of a common one, which it replaces. */
 static bool is_replaced(const cli_command *command, const cli_option *common) {
   for (const cli_option *option = command->options; option->name; option++)
     if (strcmp(option->name, common->name) == 0)
@@ -107,8 +110,8 @@ void cli_help(const cli_command *command) {
 /** The first line of the help, which is enough for a list. */
 static void print_row(const cli_option *option) {
   char letter[3] = "";
-  if (option->key < CLI_KEY_COMMON)
-    snprintf(letter, sizeof letter, "-%c", option->key);
+  if (option->letter)
+    snprintf(letter, sizeof letter, "-%c", option->letter);
   printf("--%s\t%s\t%s\t%.*s\n", option->name, letter, option->argument ? option->argument : "",
          (int)strcspn(option->help, "\n"), option->help);
 }
@@ -128,6 +131,9 @@ void cli_help_table(const cli_command *command, bool is_all) {
 
 /* ---- Options ---- */
 
+enum { WITHOUT_LETTER = 256 /**< and the number of the option stand for it to getopt */ };
+
+static const cli_option *known_options[CLI_OPTIONS_MAX];
 static struct option long_options[CLI_OPTIONS_MAX + 1];
 static char letters[2 * CLI_OPTIONS_MAX + 2];
 
@@ -135,10 +141,12 @@ static void add_option(const cli_option *option, size_t *count, size_t *used) {
   if (*count >= CLI_OPTIONS_MAX)
     return;
   int takes = option->argument ? required_argument : no_argument;
-  long_options[(*count)++] = (struct option){option->name, takes, NULL, option->key};
-  if (option->key >= CLI_KEY_COMMON)
+  int key = option->letter ? option->letter : WITHOUT_LETTER + (int)*count;
+  known_options[*count] = option;
+  long_options[(*count)++] = (struct option){option->name, takes, NULL, key};
+  if (!option->letter)
     return;
-  letters[(*used)++] = (char)option->key;
+  letters[(*used)++] = option->letter;
   if (option->argument)
     letters[(*used)++] = ':';
 }
@@ -174,15 +182,15 @@ int cli_usage(cli_run *cli, const char *format, ...) {
   return CLI_STOP;
 }
 
-/** The name under which an option is shown in a message. */
-static const char *option_name(int key) {
-  for (const struct option *option = long_options; option->name; option++)
-    if (option->val == key)
-      return option->name;
-  return "?";
+/** The option that a key stands for, which is one of them. */
+static const cli_option *option_of(int key) {
+  int i = 0;
+  while (long_options[i].val != key)
+    i++;
+  return known_options[i];
 }
 
-/** What may have been meant by a long option that is none; "" for one that is far from all. */
+/** Suggests options that are spelt like an unknown one; "" if there are none. */
 static const char *suggest_option(char text[CLI_LIST_MAX], const char *word) {
   const char *names[CLI_OPTIONS_MAX + 1];
   char typed[64];
@@ -198,70 +206,60 @@ static const char *suggest_option(char text[CLI_LIST_MAX], const char *word) {
 static int refuse(cli_run *cli, int result, const char *word) {
   char hint[CLI_LIST_MAX];
   if (result == ':')
-    return cli_usage(cli, "option --%s needs a value", option_name(optopt));
-  if (optopt >= CLI_KEY_COMMON || (optopt && word[0] == '-' && word[1] == '-'))
-    return cli_usage(cli, "option --%s takes no value", option_name(optopt));
+    return cli_usage(cli, "option --%s needs a value", option_of(optopt)->name);
+  if (optopt >= WITHOUT_LETTER || (optopt && word[0] == '-' && word[1] == '-'))
+    return cli_usage(cli, "option --%s takes no value", option_of(optopt)->name);
   if (optopt)
     return cli_usage(cli, "unknown option -%c", optopt);
   return cli_usage(cli, "unknown option %s%s", word, suggest_option(hint, word));
 }
 
-/** Handles an option that all or several commands have; CLI_END if it is one, else its key. */
-static int common_option(cli_run *cli, int key, const char *value) {
-  static const char *const when[] = {"auto", "always", "never", NULL};
-  static const char *const external[] = {"folder", "any", "none", NULL};
-  int64_t threads;
-  int choice = 0;
-  switch (key) {
-  case 'h':
-    cli_help(cli->command);
-    cli->status = CLI_DONE;
-    return CLI_STOP;
-  case 'q':
-    cli->quiet = true;
-    return CLI_END;
-  case 'v':
-    cli->verbose = true;
-    return CLI_END;
-  case KEY_JSON:
-    cli->json = true;
-    return CLI_END;
-  case KEY_STRICT:
-    cli->strict = true;
-    return CLI_END;
-  case KEY_REPORT:
-    if (strcmp(value, "-") == 0)
-      return cli_usage(cli, "--report names a file; --json prints the report on standard output");
-    cli->report = value;
-    return CLI_END;
-  case KEY_THREADS:
-    if (!cli_read_integer(&threads, value, 1, 256))
-      return cli_usage(cli, "--threads '%s' is not a number from 1 to 256", value);
-    cli->limits.threads = (int)threads;
-    return CLI_END;
-  case KEY_MEMLIMIT:
-    if (!cli_read_size(&cli->limits.memory_limit, value))
-      return cli_usage(cli, "--memlimit '%s' is not a size such as 512M or 4G", value);
-    return CLI_END;
-  case CLI_KEY_DEFLECTION:
-    if (!cli_read_number(&cli->read.deflection, value) || cli->read.deflection <= 0 ||
-        cli->read.deflection > 1)
-      return cli_usage(cli, "--deflection '%s' is not a number above 0 and up to 1", value);
-    return CLI_END;
-  case CLI_KEY_EXTERNAL:
-    if (cli_choose(cli, &choice, "external", value, external) == CLI_STOP)
-      return CLI_STOP;
-    cli->read.external = (vxm_external)choice; /* in the order of the enumeration */
-    return CLI_END;
-  case KEY_PROGRESS:
-    cli->progress = value;
-    return cli_choose(cli, &choice, "progress", value, when);
-  default:
-    return key;
-  }
+static int show_help(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  (void)option, (void)value, (void)member;
+  cli_help(cli->command);
+  cli->status = CLI_DONE;
+  return CLI_STOP;
 }
 
-int cli_next_option(cli_run *cli, const char **value) {
+static int take_report(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  if (strcmp(value, "-") == 0)
+    return cli_usage(cli, "--report names a file; --json prints the report on standard output");
+  return cli_take_text(cli, option, value, member);
+}
+
+static int take_progress(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  static const char *const when[] = {"auto", "always", "never", NULL};
+  int choice;
+  cli_take_text(cli, option, value, member);
+  return cli_choose(cli, &choice, option->name, value, when);
+}
+
+/** Puts an option behind all others that were given. */
+static void note_given(cli_run *cli, const cli_option *option) {
+  int kept = 0;
+  for (int g = 0; g < cli->given_count; g++)
+    if (cli->given[g] != option)
+      cli->given[kept++] = cli->given[g];
+  cli->given[kept++] = option;
+  cli->given_count = kept;
+}
+
+const char *cli_last_given(const cli_run *cli, const char *const *names) {
+  for (int g = cli->given_count - 1; g >= 0; g--)
+    if (cli_read_choice(cli->given[g]->name, names) >= 0)
+      return cli->given[g]->name;
+  return NULL;
+}
+
+bool cli_is_given(const cli_run *cli, const char *name) {
+  return cli_last_given(cli, (const char *const[]){name, NULL}) != NULL;
+}
+
+int cli_take_option(cli_run *cli, const cli_option *option, const char *value, void *request) {
+  return option->to.read ? option->to.read(cli, option, value, (char *)request + option->to.at) : CLI_END;
+}
+
+int cli_next_option(cli_run *cli, const cli_option **option, const char **value) {
   if (!cli->is_reading)
     build_tables(cli);
   cli->is_reading = true;
@@ -272,14 +270,30 @@ int cli_next_option(cli_run *cli, const char **value) {
       break;
     if (result == '?' || result == ':')
       return refuse(cli, result, cli->argv[optind > index ? optind - 1 : index]);
+    *option = option_of(result);
     *value = optarg;
-    int key = common_option(cli, result, optarg);
-    if (key != CLI_END)
-      return key;
+    if (!(*option)->to.is_of_run) {
+      note_given(cli, *option);
+      return CLI_END;
+    }
+    if (cli_take_option(cli, *option, *value, cli) == CLI_STOP)
+      return CLI_STOP;
   }
+  *option = NULL;
   cli->arguments = cli->argv + optind;
   cli->argument_count = cli->argc - optind;
   return CLI_END;
+}
+
+int cli_read_options(cli_run *cli, void *request) {
+  const cli_option *option;
+  const char *value;
+  while (cli_next_option(cli, &option, &value) == CLI_END)
+    if (!option)
+      return CLI_END;
+    else if (cli_take_option(cli, option, value, request) == CLI_STOP)
+      return CLI_STOP;
+  return CLI_STOP;
 }
 
 bool cli_start(cli_run *cli) {
@@ -291,91 +305,6 @@ bool cli_start(cli_run *cli) {
     return !cli->report || cli_try_file(cli, cli->report);
   cli_fail(cli);
   return false;
-}
-
-/* ---- Values ---- */
-
-bool cli_read_integer(int64_t *out, const char *text, int64_t low, int64_t high) {
-  if (!*text || strspn(text, "0123456789") != strlen(text))
-    return false;
-  errno = 0;
-  long long value = strtoll(text, NULL, 10);
-  if (errno || value < low || value > high)
-    return false;
-  *out = value;
-  return true;
-}
-
-/** As strtod, which the program uses in the C locale only, without hexadecimal, infinities and blanks. */
-static const char *read_number(double *out, const char *text) {
-  size_t length = strspn(text, "0123456789+-.eE");
-  char *end;
-  *out = strtod(text, &end);
-  return length > 0 && end == text + length && isfinite(*out) ? end : NULL;
-}
-
-bool cli_read_number(double *out, const char *text) {
-  const char *end = read_number(out, text);
-  return end && !*end;
-}
-
-bool cli_read_numbers(double *out, int count, const char *text) {
-  for (int i = 0; i < count; i++) {
-    text = read_number(&out[i], text);
-    if (!text || *text != (i + 1 < count ? ',' : '\0'))
-      return false;
-    text++;
-  }
-  return true;
-}
-
-bool cli_read_size(uint64_t *out, const char *text) {
-  static const char suffixes[] = "KMGT";
-  size_t digits = strspn(text, "0123456789");
-  char number[24];
-  if (digits == 0 || digits >= sizeof number)
-    return false;
-  memcpy(number, text, digits);
-  number[digits] = '\0';
-  int64_t value;
-  if (!cli_read_integer(&value, number, 1, INT64_MAX))
-    return false;
-  text += digits;
-  unsigned shift = 0;
-  if (*text) {
-    char letter = (char)(*text >= 'a' && *text <= 'z' ? *text - 'a' + 'A' : *text);
-    const char *found = strchr(suffixes, letter);
-    if (!found || text[1])
-      return false;
-    shift = 10 * (unsigned)(found - suffixes + 1);
-  }
-  if (value > INT64_MAX >> shift)
-    return false;
-  *out = (uint64_t)value << shift;
-  return true;
-}
-
-int cli_read_choice(const char *text, const char *const *choices) {
-  for (int i = 0; choices[i]; i++)
-    if (strcmp(text, choices[i]) == 0)
-      return i;
-  return -1;
-}
-
-const char *cli_list(char list[CLI_LIST_MAX], const char *const *choices) {
-  list[0] = '\0';
-  for (size_t i = 0, used = 0; choices[i] && used < CLI_LIST_MAX; i++)
-    used += (size_t)snprintf(list + used, CLI_LIST_MAX - used, "%s%s", i > 0 ? ", " : "", choices[i]);
-  return list;
-}
-
-int cli_choose(cli_run *cli, int *choice, const char *option, const char *value, const char *const *choices) {
-  char list[CLI_LIST_MAX];
-  int found = cli_read_choice(value, choices);
-  if (found < 0)
-    return cli_usage(cli, "--%s '%s' is none of %s", option, value, cli_list(list, choices));
-  *choice = found;
-  return CLI_END;
 }
 
 /* ---- Names of formats ---- */

@@ -22,13 +22,13 @@ typedef struct wording {
 
 static bool has_resolution(const cli_option *options) {
   for (; options && options->name; options++)
-    if (options->key == 'r')
+    if (options->letter == 'r')
       return true;
   return false;
 }
 
-/** The library's advice names the resolution. Here it names what the size of voxels was told by, or nothing
- * where it cannot be chosen. */
+/** Advice of the library says "resolution (-r)". Replaces that by the option that has set the size of voxels,
+ * or drops it where no option does. */
 static void reword(const cli_run *cli, char *text, size_t size) {
   static const wording by_voxel_size[] = {{"lower the resolution (-r)", "take a larger --voxel-size"},
                                           {"a higher resolution (-r)", "a smaller --voxel-size"}},
@@ -64,7 +64,7 @@ int cli_fail(cli_run *cli) {
   return CLI_FAILED;
 }
 
-/** Names of files, and in files of strangers, must not steer the terminal. */
+/** Prints control codes as '?': names of files, and texts in them, must not steer the terminal. */
 static void put_printable(FILE *to, const char *text) {
   for (; *text; text++)
     fputc((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text, to);

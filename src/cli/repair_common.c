@@ -5,7 +5,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value) {
+int cli_take_weld(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  vxm_repair_options *options = member;
   double tolerance;
   if (strcmp(value, "auto") == 0)
     options->weld = VXM_WELD_AUTO;
@@ -15,12 +16,13 @@ int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value) 
     options->weld = VXM_WELD_TOLERANCE;
     options->weld_tolerance = tolerance;
   } else
-    return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
+    return cli_usage(cli, "--%s '%s' is neither auto, off nor a positive distance", option->name, value);
   return CLI_END;
 }
 
-int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options) {
-  if (no_repair && repair_options)
+int cli_check_repair(cli_run *cli) {
+  static const char *const of_repair[] = {"weld", "keep-duplicates", NULL};
+  if (cli_is_given(cli, "no-repair") && cli_last_given(cli, of_repair))
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
   return CLI_END;
 }

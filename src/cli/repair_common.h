@@ -16,10 +16,10 @@ typedef struct cli_input {
   double read_ms, repair_ms;
 } cli_input;
 
-/** The argument of --weld: CLI_END or CLI_STOP. */
-int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value);
+/** Of --weld, into vxm_repair_options. */
+cli_reader cli_take_weld;
 /** CLI_STOP if options about the repair were given with --no-repair. */
-int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options);
+int cli_check_repair(cli_run *cli);
 json_t *cli_passes_json(const vxm_repair_report *report);
 /** Says what may help after what the error says. */
 void cli_advise(cli_run *cli, const char *advice);

@@ -34,8 +34,8 @@ static int distance(const char *a, const char *b) {
   return table[rows][columns];
 }
 
-/** How far a name is from what was typed: 0 for what it begins with, or ends with; else the distance, where
- * no more than a third of the letters are wrong. */
+/** How far a name is from what was typed: 0 if it begins or ends so; else the number of wrong letters, if
+ * these are a third at the most. */
 static int badness(const char *typed, const char *name) {
   size_t length = strlen(typed), whole = strlen(name);
   int wrong = distance(typed, name);

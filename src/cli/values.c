@@ -6,12 +6,12 @@
 #include <inttypes.h>
 #include <string.h>
 
-int cli_threshold_read(cli_run *cli, vxm_threshold_options *out, int key, const char *value) {
-  bool is_below = key == CLI_KEY_BELOW;
-  double *number = is_below ? &out->below : &out->at_least;
-  if (!cli_read_number(number, value))
-    return cli_usage(cli, "--%s '%s' is not a number", is_below ? "below" : "threshold", value);
-  *(is_below ? &out->use_below : &out->use_at_least) = true;
+int cli_take_threshold(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  vxm_threshold_options *threshold = member;
+  bool is_below = strcmp(option->name, "below") == 0;
+  if (!cli_read_number(is_below ? &threshold->below : &threshold->at_least, value))
+    return cli_usage(cli, "--%s '%s' is not a number", option->name, value);
+  *(is_below ? &threshold->use_below : &threshold->use_at_least) = true;
   return CLI_END;
 }
 
@@ -95,7 +95,7 @@ int cli_bits_read(cli_run *cli, vxm_grid **out, const vxm_threshold_options *thr
   return CLI_DONE;
 }
 
-/** Numbers become bits in a grid, and standard input can be read but once. */
+/** By way of a grid where numbers become bits, and of standard input, which cannot be read again. */
 int cli_sparse_read(cli_run *cli, vxm_sparse **out, const vxm_threshold_options *threshold, const char *path,
                     const char *why) {
   vxm_status status = VXM_ERROR_NUMBERS;

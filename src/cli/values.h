@@ -11,8 +11,8 @@ typedef struct cli_values {
   vxm_field *field;
 } cli_values;
 
-/** The argument of --threshold or --below: CLI_END or CLI_STOP. */
-int cli_threshold_read(cli_run *cli, vxm_threshold_options *out, int key, const char *value);
+/** Of CLI_OPTIONS_THRESHOLD. */
+cli_reader cli_take_threshold;
 /** Whether one of them was given. */
 bool cli_threshold_given(const vxm_threshold_options *threshold);
 /** Reads either and tells the warnings; a failure is in cli->error. */

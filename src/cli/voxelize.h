@@ -7,16 +7,13 @@
 #include "cli/field.h"
 
 typedef struct voxelize_request {
-  const char *input, *output, *format, *like, *confidence, *coords;
-  const char *baseline_name; /**< NULL = the library's own methods */
-  int baseline;              /**< its place in cli_baseline_names */
-  bool resolution, size, fit, pad, bounds, method, vote, parts, cavities, surface, thin, no_repair,
-      repair_options, dry_run, sparse, force, /**< which were given */
-      keep_polygons, keep_contacts;           /**< of a mesh: vxm_grid_write_options */
-  cli_style style;
+  const char *input, *output, *like, *confidence, *coords;
+  int baseline; /**< its place in cli_baseline_names; -1 = the library's own methods */
+  bool no_repair, dry_run, sparse;
   vxm_repair_options repair;
   vxm_space_options space;
   vxm_voxelize_options voxelize;
+  vxm_grid_write_options write;
   cli_field field;
   cli_engine engine;
 } voxelize_request;

@@ -42,7 +42,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
-  if (!given->field.labels && !given->baseline_name)
+  if (!given->field.labels && given->baseline < 0)
     json_object_set_new(report, "estimate", estimate_json(&results->estimate, results->octree));
   json_object_set_new(report, "grid", cli_json_space(&results->space));
   if (given->dry_run) {
@@ -54,7 +54,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   if (given->engine.engine)
     json_object_set_new(report, "engine", cli_engine_json(&given->engine));
   json_object_set_new(report, "components", json_integer(results->voxelize.components));
-  if (given->baseline_name) {
+  if (given->baseline >= 0) {
     json_object_set_new(report, "baseline", json_string(cli_baseline_names[given->baseline]));
     json_object_set(report, "figures", results->figures);
   }
@@ -131,7 +131,7 @@ static void summarize_input(const cli_run *cli, const voxelize_outcome *results)
 
 bool voxelize_is_told_before(const voxelize_request *given, const voxelize_outcome *results) {
   const uint64_t large = UINT64_C(1) << 26; /* 64 MiB */
-  return !given->baseline_name && (given->dry_run || results->estimate.grid_bytes >= large);
+  return given->baseline < 0 && (given->dry_run || results->estimate.grid_bytes >= large);
 }
 
 static void summarize_estimate(const cli_run *cli, const voxelize_request *given,
@@ -184,7 +184,7 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
     cli_row(cli, "thin",
             "%" PRId64 " voxels added for the %.3g %% of the surface that is thinner than a voxel",
             report->thin_voxels, 100 * report->thin_share);
-  if (given->baseline_name) {
+  if (given->baseline >= 0) {
     char figures[512];
     cli_figures_text(figures, sizeof figures, results->figures);
     cli_row(cli, "baseline", "%s: %s", cli_baseline_names[given->baseline], figures);
@@ -206,5 +206,5 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
     cli_row(cli, "threads", "%d", vxm_context_threads(cli->context));
     cli_row(cli, "memory", "%s", cli_bytes_text(bytes, vxm_context_peak_bytes(cli->context)));
   }
-  cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+  cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
 }

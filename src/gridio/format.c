@@ -49,7 +49,7 @@ static bool has_name(const char *path, const vxm_grid_format *format) {
   return vxm_text_equal_nocase(end, format->name);
 }
 
-/** A pattern of names makes a sequence of what is a stack in one file. */
+/** Under a name with a pattern, such as slice_%04d.tif, TIFF is a sequence of files, else a stack in one. */
 static const vxm_grid_format *of_pattern(const vxm_grid_format *format, const char *path) {
   return format == &vxm_format_tif && vxm_slices_are_tiff(path) ? &vxm_format_tif_slices : format;
 }
@@ -238,7 +238,7 @@ vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const cha
   return status;
 }
 
-/** By way of a grid, whose warnings stay. */
+/** Reads a grid and makes an octree of it. */
 static vxm_status read_dense(vxm_sparse **out, const vxm_grid_format *format, const vxm_input *input,
                              vxm_error *error) {
   vxm_grid *grid;

@@ -48,7 +48,7 @@ vxm_status vxm_values_check(vxm_values_type a, vxm_values_type b, vxm_set_operat
 
 /* ---- Values ---- */
 
-/** Whether a value belongs to a voxel: any but 0, of colours those that can be seen. */
+/** Whether a voxel has a value: any but 0; of colours, any opacity but 0. */
 static inline bool has_value(const unsigned char *value, vxm_values_type type, size_t size) {
   static const unsigned char none[8] = {0};
   if (type.kind == VXM_FIELD_COLORS)

@@ -109,6 +109,17 @@ vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status
                      vxm_field_kind_name(field->about.kind), vxm_scalar_name(field->scalar), why);
 }
 
+vxm_status vxm_field_check_labels(const vxm_field *field, const char *path, int max, const char *why,
+                                  vxm_error *error) {
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
+  if (field->channels == 4)
+    return VXM_OK;
+  vxm_status status = vxm_field_measure(&range, field, error);
+  if (status == VXM_OK && (vxm_scalar_is_float(field->scalar) || range.min < 0 || range.max > max))
+    status = vxm_field_refuse(field, path, VXM_ERROR_RANGE, why, error);
+  return status;
+}
+
 vxm_status vxm_field_write_file(const vxm_field *field, const char *path,
                                 vxm_status (*write)(vxm_output *output, const vxm_field *field,
                                                     vxm_error *error),

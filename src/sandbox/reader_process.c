@@ -268,6 +268,24 @@ vxm_status vxm_reader_process_mesh(vxm_soup *soup, const vxm_module_need *need,
   return VXM_OK;
 }
 
+vxm_status vxm_reader_process_picture(vxm_soup **made, vxm_context *context, const char *purpose,
+                                      const vxm_reader_request *request, vxm_error *error) {
+  const vxm_module_need need = {"images", "libpng-dev libjpeg-dev", purpose};
+  vxm_references none = VXM_REFERENCES_NONE;
+  none.allowed = VXM_EXTERNAL_NONE;
+  *made = NULL;
+  vxm_status status = vxm_soup_create(made, context, "", error);
+  if (status == VXM_OK)
+    status = vxm_appearance_create(&(*made)->appearance, context, error);
+  if (status == VXM_OK)
+    status = vxm_reader_process_mesh(*made, &need, request, &none, error);
+  if (status != VXM_OK) {
+    vxm_soup_destroy(*made);
+    *made = NULL;
+  }
+  return status;
+}
+
 vxm_status vxm_reader_process_grid(vxm_voxel_sink *sink, vxm_warnings *warnings, vxm_context *context,
                                    const vxm_module_need *need, const vxm_reader_request *request,
                                    vxm_error *error) {

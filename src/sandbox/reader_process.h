@@ -29,6 +29,16 @@ vxm_status vxm_reader_process_mesh(vxm_soup *soup, const vxm_module_need *need,
                                    vxm_error *error);
 
 /**
+ * Decodes a picture, PNG or JPEG, with the module "images".
+ *
+ * @param[out] made    its appearance has the picture, if one was made; to be destroyed; NULL after a failure
+ * @param      purpose what it is for, for the message where the module is missing
+ * @return as vxm_reader_process_mesh
+ */
+vxm_status vxm_reader_process_picture(vxm_soup **made, vxm_context *context, const char *purpose,
+                                      const vxm_reader_request *request, vxm_error *error);
+
+/**
  * Reads a grid, under the same limits, and hands it to the sink, whose error comes back if it has one.
  *
  * @param warnings takes what is odd about the reading

@@ -42,12 +42,12 @@ enum { VXM_PLACE_ORIGIN = 1, VXM_PLACE_SIZE = 2 };
 
 /** An array with a value for each voxel, or the 4 bytes of a colour. */
 typedef struct vxm_sink_array {
-  uint32_t scalar;   /**< vxm_scalar */
-  uint32_t is_color; /**< 0 or 1 */
-  int64_t shape[3];  /**< the last is the fastest */
-  double place[6];   /**< origin, and size of voxels */
-  uint32_t placed;   /**< VXM_PLACE_ORIGIN, VXM_PLACE_SIZE */
-  uint32_t fits;     /**< arrays of the file that could have been read */
+  uint32_t scalar;      /**< vxm_scalar */
+  uint32_t is_color;    /**< 0 or 1 */
+  int64_t shape[3];     /**< the last is the fastest */
+  double place[6];      /**< origin, and size of voxels */
+  uint32_t known_place; /**< VXM_PLACE_ORIGIN, VXM_PLACE_SIZE */
+  uint32_t fits;        /**< arrays of the file that could have been read */
 } vxm_sink_array;
 
 typedef struct vxm_voxel_sink {

@@ -250,7 +250,7 @@ static vxm_status receive_array(vxm_voxel_sink *sink, vxm_process *sender, vxm_e
   vxm_status status = vxm_process_receive(sender, &array, sizeof array, error);
   if (status != VXM_OK)
     return status;
-  bool is_sound = array.scalar <= VXM_INT64 && array.is_color <= 1 && array.placed <= 3;
+  bool is_sound = array.scalar <= VXM_INT64 && array.is_color <= 1 && array.known_place <= 3;
   for (int a = 0; a < 3; a++)
     is_sound &= array.shape[a] >= 1 && is_place(array.shape[a]);
   return is_sound ? sink->array(sink->payload, &array, error) : vxm_message_damaged(error);

@@ -28,11 +28,11 @@ void vxm_axes_warn(vxm_warnings *warnings) {
            "its attribute \"axes\" is not x, y and z in some order, such as \"z,y,x\": x, y, z is taken");
 }
 
-void vxm_place_warn(vxm_warnings *warnings, unsigned there) {
-  if (there == 0)
+void vxm_place_warn(vxm_warnings *warnings, unsigned known) {
+  if (known == 0)
     vxm_warn(warnings, "no attributes \"origin\" and \"voxel_size\" of three numbers: 0 0 0 and 1 are taken");
-  else if (!(there & VXM_PLACE_ORIGIN))
+  else if (!(known & VXM_PLACE_ORIGIN))
     vxm_warn(warnings, "no attribute \"origin\" of three numbers: 0 0 0 is taken");
-  else if (!(there & VXM_PLACE_SIZE))
+  else if (!(known & VXM_PLACE_SIZE))
     vxm_warn(warnings, "no attribute \"voxel_size\" of one number or three: 1 is taken");
 }

@@ -18,10 +18,10 @@
  */
 bool vxm_axes_parse(int axis[3], const char *text, size_t size);
 
-/** Warns of axes that are something else, which may be the wrong way round as they are taken. */
+/** Warns of an attribute that does not name the axes: they are taken as x, y, z, which may be wrong. */
 void vxm_axes_warn(vxm_warnings *warnings);
 
-/** Warns of what is missing of a place, if anything is. */
-void vxm_place_warn(vxm_warnings *warnings, unsigned there);
+/** Warns if the origin or the voxel size is missing. @param known VXM_PLACE_... that are there */
+void vxm_place_warn(vxm_warnings *warnings, unsigned known);
 
 #endif

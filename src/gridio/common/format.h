@@ -40,7 +40,7 @@ typedef struct vxm_grid_writer_kind {
   /** Sets up `state` and writes the header. */
   vxm_status (*begin)(vxm_grid_writer *writer, vxm_error *error);
   vxm_status (*put)(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
-  /** Writes what is left after the last slice. */
+  /** Writes what is left after the last slice; NULL = nothing. */
   vxm_status (*end)(vxm_grid_writer *writer, vxm_error *error);
   /** Frees what `state` holds, whether or not the file was written; NULL = it holds nothing. */
   void (*drop)(vxm_grid_writer *writer);
@@ -152,6 +152,10 @@ vxm_status vxm_field_write_file(const vxm_field *field, const char *path,
 /** Refuses a field: "the field (distance, float32) WHY". */
 vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status status, const char *why,
                             vxm_error *error);
+
+/** Refuses numbers that are no labels from 0 to `max`; colours are right. VXM_ERROR_RANGE */
+vxm_status vxm_field_check_labels(const vxm_field *field, const char *path, int max, const char *why,
+                                  vxm_error *error);
 
 /** One per file format. */
 extern const vxm_grid_format vxm_format_binvox, vxm_format_bt, vxm_format_glb, vxm_format_h5,

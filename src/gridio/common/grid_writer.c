@@ -187,7 +187,7 @@ vxm_status vxm_grid_writer_commit(vxm_grid_writer *writer, vxm_error *error) {
   writer->report = true;
   if (status == VXM_OK && writer->values)
     status = vxm_values_writer_commit(writer->values, error);
-  else if (status == VXM_OK)
+  else if (status == VXM_OK && writer->format->writer->end)
     status = writer->format->writer->end(writer, error);
   if (status == VXM_OK && writer->output) {
     status = vxm_output_commit_both(writer->output, writer->sidecar, error);

@@ -93,7 +93,7 @@ static vxm_status fill(vxm_field *field, const vxm_raster *r, vxm_raster_source 
   return status;
 }
 
-/** A field of 64-bit floats of scaled numbers, which are those of 32 bits where they can be. */
+/** Replaces a field by its scaled numbers: 32-bit floats where these hold them, else 64-bit ones. */
 static vxm_status scale(vxm_field **field, const vxm_raster *r, vxm_error *error) {
   vxm_field *scaled, *raw = *field;
   vxm_status status =
@@ -150,5 +150,17 @@ vxm_status vxm_raster_bits(vxm_grid **out, const vxm_field *field, vxm_bits_rule
     status = vxm_field_to_bits(out, field, file, error);
   if (status == VXM_OK)
     (*out)->warnings = field->warnings;
+  return status;
+}
+
+vxm_status vxm_raster_bits_of_file(vxm_grid **out,
+                                   vxm_status (*read_field)(vxm_field **out, const vxm_input *input,
+                                                            vxm_error *error),
+                                   const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  vxm_field *field = NULL;
+  vxm_status status = read_field(&field, input, error);
+  if (status == VXM_OK)
+    status = vxm_raster_bits(out, field, rule, input->name, error);
+  vxm_field_destroy(field);
   return status;
 }

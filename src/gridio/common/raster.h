@@ -41,5 +41,10 @@ vxm_status vxm_raster_read(vxm_field **out, const vxm_raster *raster, vxm_contex
 /** Bits of a field that was read, by a rule; the field's warnings go along. VXM_ERROR_NUMBERS */
 vxm_status vxm_raster_bits(vxm_grid **out, const vxm_field *field, vxm_bits_rule rule, const char *file,
                            vxm_error *error);
+/** The same of a file, whose numbers a format reads. */
+vxm_status vxm_raster_bits_of_file(vxm_grid **out,
+                                   vxm_status (*read_field)(vxm_field **out, const vxm_input *input,
+                                                            vxm_error *error),
+                                   const vxm_input *input, vxm_bits_rule rule, vxm_error *error);
 
 #endif

@@ -13,7 +13,7 @@ typedef struct vxm_sidecar_text {
   const char *bits;   /**< within a byte; NULL where voxels are whole bytes */
 } vxm_sidecar_text;
 
-/** Of files with x fastest that have one for a table of labels alone. */
+/** For formats with x fastest whose JSON has nothing but the table of labels. */
 extern const vxm_sidecar_text vxm_sidecar_labels;
 
 /**
@@ -56,7 +56,7 @@ void vxm_sidecar_remove_labels(vxm_context *context, const char *data_path);
  * @return whether there is a table that can be read
  */
 bool vxm_sidecar_read_labels(vxm_space *space, vxm_about *about, const vxm_input *input);
-/** The same, if it has the dims of the file. */
+/** The same into `about`, if the JSON is of a grid of these dimensions. */
 void vxm_sidecar_take_labels(vxm_about *about, const int64_t dims[3], const vxm_input *input);
 
 #endif

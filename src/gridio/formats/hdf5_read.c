@@ -71,16 +71,16 @@ static void warn_array(receipt *r, const vxm_sink_array *array) {
              array->fits);
   if (r->has_odd_axes)
     vxm_axes_warn(&r->warnings);
-  vxm_place_warn(&r->warnings, array->placed);
+  vxm_place_warn(&r->warnings, array->known_place);
 }
 
-/** Where nothing arrives nothing is written to, so that a short file cannot take much memory. */
+/** Values are not touched before they arrive, so that a short file cannot take much memory. */
 static vxm_status take_array(void *payload, const vxm_sink_array *array, vxm_error *error) {
   receipt *r = payload;
   for (int a = 0; a < 3; a++) {
     r->space.dims[r->axis[a]] = array->shape[a];
-    r->space.origin[a] = array->placed & VXM_PLACE_ORIGIN ? array->place[a] : 0;
-    r->space.voxel_size[a] = array->placed & VXM_PLACE_SIZE ? array->place[3 + a] : 1;
+    r->space.origin[a] = array->known_place & VXM_PLACE_ORIGIN ? array->place[a] : 0;
+    r->space.voxel_size[a] = array->known_place & VXM_PLACE_SIZE ? array->place[3 + a] : 1;
   }
   vxm_status status = vxm_space_check_file(&r->space, r->input, 0, error);
   if (status != VXM_OK)
@@ -177,16 +177,10 @@ vxm_status vxm_hdf5_read_field(vxm_field **out, const vxm_input *input, vxm_erro
 }
 
 vxm_status vxm_hdf5_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, vxm_hdf5_read_field, input, rule, error);
   receipt r = {.input = input, .wants_space = true};
-  vxm_field *field = NULL;
   vxm_error local = VXM_ERROR_INIT;
-  if (rule != VXM_BITS_NONE) {
-    vxm_status status = vxm_hdf5_read_field(&field, input, error);
-    if (status == VXM_OK)
-      status = vxm_raster_bits(out, field, rule, input->name, error);
-    vxm_field_destroy(field);
-    return status;
-  }
   vxm_status status = receive(&r, &local);
   if (status == VXM_OK) {
     vxm_about_destroy(&r.about);

@@ -108,14 +108,11 @@ static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error 
 }
 
 static vxm_status read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, read_field, input, rule, error);
   vxm_nifti_header h;
-  vxm_field *field = NULL;
-  vxm_status status = read_file(rule == VXM_BITS_NONE ? NULL : &field, &h, input, error);
-  if (status == VXM_OK)
-    status = field ? vxm_raster_bits(out, field, rule, input->name, error)
-                   : vxm_grid_create(out, input->context, &h.raster.space, error);
-  vxm_field_destroy(field);
-  return status;
+  vxm_status status = read_file(NULL, &h, input, error);
+  return status == VXM_OK ? vxm_grid_create(out, input->context, &h.raster.space, error) : status;
 }
 
 static bool sniff(const vxm_input *input) {

@@ -175,19 +175,12 @@ static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
   return VXM_OK;
 }
 
-static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
-  (void)writer;
-  (void)error;
-  return VXM_OK;
-}
-
 static const vxm_grid_writer_kind writer_kind = {
     .layout = VXM_PLANE_Z_FAST,
     .sidecar = &description,
     .state_bytes = state_bytes,
     .begin = begin,
     .put = vxm_byte_rows_put,
-    .end = end,
     .file_bytes = vxm_space_voxels,
 };
 

@@ -229,7 +229,7 @@ static void carry(fields *f, const char *key, text value) {
                    (size_t)(value.end - value.at));
 }
 
-/** Fields not named here say nothing that matters for a grid. */
+/** Reads a field of the header; those not named here do not matter for a grid. */
 static vxm_status read_field(fields *f, text name, text value) {
   const struct {
     const char *names[2];

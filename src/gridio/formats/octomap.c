@@ -9,7 +9,7 @@
 
 const vxm_module_need vxm_octomap_need = {"octomap", "liboctomap-dev", "reading and writing .bt files"};
 
-/** What does not lie on the lattice, as hardly any grid does, the JSON tells. */
+/** The JSON has the exact place: hardly any grid lies on OctoMap's lattice. */
 static const vxm_sidecar_text description = {VXM_OCTOMAP_JSON, "an octree", NULL};
 
 /* ---- The place ---- */

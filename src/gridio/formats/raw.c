@@ -10,7 +10,7 @@
 static const vxm_sidecar_text description = {"voxmend raw", "x fastest, then y, then z",
                                              "least significant first"};
 
-/** Any bytes may be a raw grid: what tells is the name, with the JSON beside it. */
+/** By the name and the JSON beside it: the bytes could be anything. */
 static bool sniff(const vxm_input *input) {
   return vxm_text_equal_nocase(vxm_path_extension(input->name), "raw") && vxm_sidecar_exists(input->name);
 }

@@ -100,18 +100,11 @@ static void take_pixels(unsigned char *to, const unsigned char *pixels, const se
 }
 
 static vxm_status decode(unsigned char *to, const sequence *s, const vxm_input *input, vxm_error *error) {
-  const vxm_module_need need = {"images", "libpng-dev libjpeg-dev", "reading slices"};
   const vxm_reader_request request = {
       .data = input->data, .size = input->size, .name = input->name, .hint = "slice"};
-  vxm_references none = VXM_REFERENCES_NONE;
   vxm_error local = VXM_ERROR_INIT;
-  vxm_soup *made = NULL;
-  none.allowed = VXM_EXTERNAL_NONE;
-  vxm_status status = vxm_soup_create(&made, s->context, "", &local);
-  if (status == VXM_OK)
-    status = vxm_appearance_create(&made->appearance, s->context, &local);
-  if (status == VXM_OK)
-    status = vxm_reader_process_mesh(made, &need, &request, &none, &local);
+  vxm_soup *made;
+  vxm_status status = vxm_reader_process_picture(&made, s->context, "reading slices", &request, &local);
   const vxm_image *image =
       status == VXM_OK && made->appearance->image_count == 1 ? made->appearance->images : NULL;
   if (image && image->bytes && image->width == s->first.width && image->height == s->first.height)
@@ -258,25 +251,23 @@ static void take_bits(vxm_field *field) {
     field->values[v] &= 1;
 }
 
+static vxm_status read_pictures(vxm_field **out, const vxm_input *input, vxm_error *error) {
+  vxm_status status = read_field(out, input, error);
+  if (status == VXM_OK)
+    take_bits(*out);
+  return status;
+}
+
 static vxm_status read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
-  vxm_field *field = NULL;
-  vxm_status status;
-  if (rule == VXM_BITS_NONE) {
-    sequence s;
-    status = open_sequence(&s, input, error);
-    vxm_about_destroy(&s.about);
-    if (status == VXM_OK)
-      status = vxm_grid_create(out, s.context, &s.raster.space, error);
-    if (status == VXM_OK)
-      warn(&s, &(*out)->warnings);
-    return status;
-  }
-  status = read_field(&field, input, error);
-  if (status == VXM_OK) {
-    take_bits(field);
-    status = vxm_raster_bits(out, field, rule, input->name, error);
-  }
-  vxm_field_destroy(field);
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, read_pictures, input, rule, error);
+  sequence s;
+  vxm_status status = open_sequence(&s, input, error);
+  vxm_about_destroy(&s.about);
+  if (status == VXM_OK)
+    status = vxm_grid_create(out, s.context, &s.raster.space, error);
+  if (status == VXM_OK)
+    warn(&s, &(*out)->warnings);
   return status;
 }
 

@@ -203,7 +203,7 @@ const vxm_values_writer_kind vxm_slices_values = {
     .drop = drop,
 };
 
-/** No row has to be made of them. */
+/** TIFF takes the values as they are, without rows of pixels. */
 static vxm_status begin_tiff(vxm_values_writer *w, vxm_error *error) {
   return check(&w->space, &w->values, w->path, error);
 }

@@ -163,7 +163,7 @@ static bool is_alike(const stack *s, uint64_t directory) {
   return true;
 }
 
-/** Counts the pages. Directories of a sound file do not share bytes: a chain that goes back is found out. */
+/** Counts the pages. Directories of a sound file do not overlap, which ends a chain that runs in a circle. */
 static vxm_status count_pages(stack *s, vxm_error *error) {
   uint64_t seen = 0;
   for (uint64_t at = s->first; at != 0; at = next_directory(s, at)) {
@@ -351,19 +351,13 @@ vxm_status vxm_tiff_read_field(vxm_field **out, const vxm_input *input, vxm_erro
 }
 
 vxm_status vxm_tiff_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, vxm_tiff_read_field, input, rule, error);
   stack s;
-  vxm_field *field = NULL;
-  if (rule == VXM_BITS_NONE) {
-    vxm_status status = read_header(&s, input, error);
-    if (status == VXM_OK)
-      status = vxm_grid_create(out, input->context, &s.raster.space, error);
-    if (status == VXM_OK)
-      warn_place(&s, &(*out)->warnings);
-    return status;
-  }
-  vxm_status status = vxm_tiff_read_field(&field, input, error);
+  vxm_status status = read_header(&s, input, error);
   if (status == VXM_OK)
-    status = vxm_raster_bits(out, field, rule, input->name, error);
-  vxm_field_destroy(field);
+    status = vxm_grid_create(out, input->context, &s.raster.space, error);
+  if (status == VXM_OK)
+    warn_place(&s, &(*out)->warnings);
   return status;
 }

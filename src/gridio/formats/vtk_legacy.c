@@ -205,19 +205,13 @@ static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error 
 }
 
 static vxm_status read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  if (rule != VXM_BITS_NONE)
+    return vxm_raster_bits_of_file(out, read_field, input, rule, error);
   scan s = {.input = input};
   vxm_raster raster;
   vxm_about about;
-  vxm_field *field = NULL;
-  if (rule == VXM_BITS_NONE) {
-    vxm_status status = read_header(&raster, &about, &s, error);
-    return status == VXM_OK ? vxm_grid_create(out, input->context, &raster.space, error) : status;
-  }
-  vxm_status status = read_field(&field, input, error);
-  if (status == VXM_OK)
-    status = vxm_raster_bits(out, field, rule, input->name, error);
-  vxm_field_destroy(field);
-  return status;
+  vxm_status status = read_header(&raster, &about, &s, error);
+  return status == VXM_OK ? vxm_grid_create(out, input->context, &raster.space, error) : status;
 }
 
 static bool sniff(const vxm_input *input) {

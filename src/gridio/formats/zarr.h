@@ -23,8 +23,8 @@ typedef struct vxm_zarr_array {
   char separator;        /**< between the numbers of a chunk's name */
   unsigned char fill[8]; /**< a value that is not there, as the field has it */
   vxm_space space;
-  unsigned placed; /**< what the attributes say of it: VXM_PLACE_ORIGIN, VXM_PLACE_SIZE */
-  int axis[3];     /**< of the grid, for each of the first three */
+  unsigned known_place; /**< what the attributes say of it: VXM_PLACE_ORIGIN, VXM_PLACE_SIZE */
+  int axis[3];          /**< of the grid, for each of the first three */
   bool has_odd_axes;
   vxm_about about;
 } vxm_zarr_array;

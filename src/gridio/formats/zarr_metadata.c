@@ -363,11 +363,11 @@ static void read_attributes(vxm_zarr_array *out, vxm_context *context, const jso
   read_axes(out, root);
   if (vxm_json_triple(place.origin, root, "origin")) {
     memcpy(out->space.origin, place.origin, sizeof place.origin);
-    out->placed |= VXM_PLACE_ORIGIN;
+    out->known_place |= VXM_PLACE_ORIGIN;
   }
   if (read_size(place.voxel_size, root)) {
     memcpy(out->space.voxel_size, place.voxel_size, sizeof place.voxel_size);
-    out->placed |= VXM_PLACE_SIZE;
+    out->known_place |= VXM_PLACE_SIZE;
   }
   read_about(&out->about, context, root);
 }

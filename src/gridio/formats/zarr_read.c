@@ -223,7 +223,7 @@ static vxm_status load_chunks(loading *l, vxm_error *error) {
 static void warn(const vxm_zarr_array *array, vxm_warnings *warnings) {
   if (array->has_odd_axes)
     vxm_axes_warn(warnings);
-  vxm_place_warn(warnings, array->placed);
+  vxm_place_warn(warnings, array->known_place);
 }
 
 static vxm_status load_values(vxm_field **out, vxm_zarr_array *array, int folder, const vxm_input *input,
@@ -290,12 +290,6 @@ vxm_status vxm_zarr_read_field(vxm_field **out, const vxm_input *input, vxm_erro
 }
 
 vxm_status vxm_zarr_read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
-  vxm_field *field = NULL;
-  if (rule == VXM_BITS_NONE)
-    return read_folder(NULL, out, input, error);
-  vxm_status status = read_folder(&field, NULL, input, error);
-  if (status == VXM_OK)
-    status = vxm_raster_bits(out, field, rule, input->name, error);
-  vxm_field_destroy(field);
-  return status;
+  return rule == VXM_BITS_NONE ? read_folder(NULL, out, input, error)
+                               : vxm_raster_bits_of_file(out, vxm_zarr_read_field, input, rule, error);
 }

@@ -145,18 +145,11 @@ static void drop_bytes(vxm_image *image, vxm_context *context, const char *failu
 }
 
 static vxm_status decode(vxm_image *image, vxm_soup *soup, vxm_error *error) {
-  const vxm_module_need need = {"images", "libpng-dev libjpeg-dev", "reading textures"};
   const vxm_reader_request request = {
       .data = image->bytes, .size = (size_t)image->size, .name = image->name, .hint = "image"};
-  vxm_references none = VXM_REFERENCES_NONE;
   vxm_error local = VXM_ERROR_INIT;
-  vxm_soup *made = NULL;
-  none.allowed = VXM_EXTERNAL_NONE;
-  vxm_status status = vxm_soup_create(&made, soup->context, "", &local);
-  if (status == VXM_OK)
-    status = vxm_appearance_create(&made->appearance, soup->context, &local);
-  if (status == VXM_OK)
-    status = vxm_reader_process_mesh(made, &need, &request, &none, &local);
+  vxm_soup *made;
+  vxm_status status = vxm_reader_process_picture(&made, soup->context, "reading textures", &request, &local);
   if (status == VXM_OK && made->appearance->image_count == 1 && made->appearance->images[0].width > 0)
     take_decoded(image, made->appearance);
   else if (status == VXM_OK)

@@ -228,8 +228,8 @@ static vxm_status send_head(const reading *r, const vxm_hdf5_survey *survey, vxm
   vxm_sink_array array = {.scalar = r->set.scalar, .is_color = r->set.rank == 4, .fits = survey->fitting};
   for (int a = 0; a < 3; a++)
     array.shape[a] = (int64_t)r->set.dims[a];
-  array.placed = read_triple(r->set.set, "origin", false, array.place) ? VXM_PLACE_ORIGIN : 0;
-  array.placed |= read_triple(r->set.set, "voxel_size", true, array.place + 3) ? VXM_PLACE_SIZE : 0;
+  array.known_place = read_triple(r->set.set, "origin", false, array.place) ? VXM_PLACE_ORIGIN : 0;
+  array.known_place |= read_triple(r->set.set, "voxel_size", true, array.place + 3) ? VXM_PLACE_SIZE : 0;
   vxm_status status = send_text(r, "kind", error);
   if (status == VXM_OK)
     status = send_axes(r, error);

@@ -3,6 +3,7 @@
 #include "gridio/common/format.h"
 #include "gridio/formats/minecraft/block_colors.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -87,7 +88,24 @@ static size_t count_choices(const char *names) {
 
 /* ---- Making ---- */
 
-vxm_status vxm_blocks_check_field(const vxm_field *field, const char *path, vxm_error *error) {
+static vxm_status check_space(const vxm_space *space, const char *path, const char *format, int64_t side_max,
+                              vxm_error *error) {
+  const vxm_place place = {path, 0, -1, -1};
+  uint64_t count = (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
+  for (int a = 0; a < 3; a++)
+    if (space->dims[a] > side_max)
+      return vxm_fail_at(error, VXM_ERROR_RANGE, place,
+                         "%s holds up to %" PRId64 " blocks along an axis, not %" PRId64
+                         "; lower the resolution",
+                         format, side_max, space->dims[a]);
+  if (count > INT32_MAX)
+    return vxm_fail_at(error, VXM_ERROR_RANGE, place,
+                       "%s holds up to %d blocks, not %" PRIu64 "; lower the resolution", format, INT32_MAX,
+                       count);
+  return VXM_OK;
+}
+
+static vxm_status check_values(const vxm_field *field, const char *path, vxm_error *error) {
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_field_kind kind = field->about.kind;
   if (kind == VXM_FIELD_COLORS)
@@ -104,6 +122,12 @@ vxm_status vxm_blocks_check_field(const vxm_field *field, const char *path, vxm_
                          "threshold, or .npy or .nrrd",
                          error);
   return status;
+}
+
+vxm_status vxm_blocks_check_field(const vxm_field *field, const char *path, const char *format,
+                                  int64_t side_max, vxm_error *error) {
+  vxm_status status = check_values(field, path, error);
+  return status == VXM_OK ? check_space(&field->space, path, format, side_max, error) : status;
 }
 
 /** Bits lie in a field as numbers 0 and 1 of which nothing is said. */
@@ -254,15 +278,24 @@ static vxm_status make_blocks(vxm_blocks *out, const vxm_field *field, vxm_error
 }
 
 vxm_status vxm_blocks_write(vxm_output *output, const vxm_field *field,
-                            vxm_status (*write)(vxm_output *output, const vxm_blocks *blocks,
-                                                vxm_error *error),
+                            vxm_status (*put_tree)(vxm_nbt_writer *writer, const vxm_blocks *blocks,
+                                                   uint16_t *row, vxm_error *error),
                             vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_nbt_writer *writer = NULL;
   vxm_blocks blocks;
   vxm_status status = make_blocks(&blocks, field, error);
   if (status != VXM_OK)
     return status;
-  status = write(output, &blocks, error);
+  uint16_t *row = vxm_alloc(field->context, (size_t)blocks.size[0], sizeof *row, &local);
+  status = row ? vxm_nbt_open(&writer, field->context, output, &local) : local.code;
+  if (status == VXM_OK)
+    status = put_tree(writer, &blocks, row, &local);
+  vxm_nbt_close(writer);
+  vxm_free(field->context, row);
   destroy_blocks(&blocks);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -36,13 +36,19 @@ typedef struct vxm_blocks {
  */
 vxm_status vxm_blocks_check_names(const char *names, vxm_error *error);
 
-/** Whether a field can be blocks: bits, labels from 0 to 65535, or colours. @return VXM_OK,
- * VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE */
-vxm_status vxm_blocks_check_field(const vxm_field *field, const char *path, vxm_error *error);
-/** Makes blocks of a field, and writes them by a function. */
+/**
+ * Whether a field can be blocks: bits, labels from 0 to 65535, or colours, and not too many of them.
+ *
+ * @param format   ".schem" or ".litematic"
+ * @param side_max the most blocks along an axis that it holds
+ * @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE
+ */
+vxm_status vxm_blocks_check_field(const vxm_field *field, const char *path, const char *format,
+                                  int64_t side_max, vxm_error *error);
+/** Makes blocks of a field, and writes the tree of a format of them. @param row has room for one */
 vxm_status vxm_blocks_write(vxm_output *output, const vxm_field *field,
-                            vxm_status (*write)(vxm_output *output, const vxm_blocks *blocks,
-                                                vxm_error *error),
+                            vxm_status (*put_tree)(vxm_nbt_writer *writer, const vxm_blocks *blocks,
+                                                   uint16_t *row, vxm_error *error),
                             vxm_error *error);
 
 /** The blocks of a row along the game's x. */

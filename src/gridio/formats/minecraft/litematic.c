@@ -14,15 +14,6 @@
 /** Version 5 is that of Litematica for Minecraft 1.16.5. */
 enum { LITEMATIC_VERSION = 5, DATA_VERSION = 2586, BITS_LEAST = 2 };
 
-static vxm_status check_space(const vxm_space *space, const char *path, vxm_error *error) {
-  uint64_t count = (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
-  if (count <= INT32_MAX)
-    return VXM_OK;
-  return vxm_fail_at(error, VXM_ERROR_RANGE, (vxm_place){path, 0, -1, -1},
-                     ".litematic holds up to %d blocks, not %" PRIu64 "; lower the resolution", INT32_MAX,
-                     count);
-}
-
 static int bits_of(size_t count) {
   int bits = BITS_LEAST;
   while ((count - 1) >> bits)
@@ -148,27 +139,12 @@ static vxm_status put_tree(vxm_nbt_writer *writer, const vxm_blocks *blocks, uin
   return status;
 }
 
-static vxm_status write_blocks(vxm_output *output, const vxm_blocks *blocks, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_nbt_writer *writer = NULL;
-  uint16_t *row = vxm_alloc(blocks->field->context, (size_t)blocks->size[0], sizeof *row, &local);
-  vxm_status status = row ? vxm_nbt_open(&writer, blocks->field->context, output, &local) : local.code;
-  if (status == VXM_OK)
-    status = put_tree(writer, blocks, row, &local);
-  vxm_nbt_close(writer);
-  vxm_free(blocks->field->context, row);
-  if (status != VXM_OK)
-    vxm_error_pass(error, &local);
-  return status;
-}
-
 static vxm_status write_litematic(vxm_output *output, const vxm_field *field, vxm_error *error) {
-  return vxm_blocks_write(output, field, write_blocks, error);
+  return vxm_blocks_write(output, field, put_tree, error);
 }
 
 static vxm_status check_field(const vxm_field *field, const char *path, vxm_error *error) {
-  vxm_status status = vxm_blocks_check_field(field, path, error);
-  return status == VXM_OK ? check_space(&field->space, path, error) : status;
+  return vxm_blocks_check_field(field, path, ".litematic", INT64_MAX, error);
 }
 
 static vxm_status write_field(const vxm_field *field, const char *path, vxm_error *error) {

@@ -9,24 +9,8 @@
 #include "gridio/formats/minecraft/blocks.h"
 #include "gridio/formats/minecraft/nbt_read.h"
 
-#include <inttypes.h>
-
 /** Minecraft 1.16.5, whose blocks all later versions know how to read. */
-enum { SCHEM_VERSION = 2, DATA_VERSION = 2586, SIDE_MOST = UINT16_MAX };
-
-static vxm_status check_space(const vxm_space *space, const char *path, vxm_error *error) {
-  uint64_t count = (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
-  for (int a = 0; a < 3; a++)
-    if (space->dims[a] > SIDE_MOST)
-      return vxm_fail_at(error, VXM_ERROR_RANGE, (vxm_place){path, 0, -1, -1},
-                         ".schem holds up to %d blocks along an axis, not %" PRId64 "; lower the resolution",
-                         SIDE_MOST, space->dims[a]);
-  if (count > INT32_MAX)
-    return vxm_fail_at(error, VXM_ERROR_RANGE, (vxm_place){path, 0, -1, -1},
-                       ".schem holds up to %d blocks, not %" PRIu64 "; lower the resolution", INT32_MAX,
-                       count);
-  return VXM_OK;
-}
+enum { SCHEM_VERSION = 2, DATA_VERSION = 2586 };
 
 /** 7 bits a byte, the lowest first. Returns their number. */
 static size_t put_number(unsigned char to[3], unsigned value) {
@@ -90,8 +74,8 @@ static void put_palette(vxm_nbt_writer *writer, const vxm_blocks *blocks) {
   vxm_nbt_end(writer);
 }
 
-static vxm_status put_tree(vxm_nbt_writer *writer, const vxm_blocks *blocks, uint16_t *row,
-                           unsigned char *bytes, vxm_error *error) {
+static vxm_status put_packed(vxm_nbt_writer *writer, const vxm_blocks *blocks, uint16_t *row,
+                             unsigned char *bytes, vxm_error *error) {
   size_t size;
   vxm_status status = do_rows(&size, NULL, blocks, row, bytes, error);
   if (status == VXM_OK && size > INT32_MAX)
@@ -111,31 +95,21 @@ static vxm_status put_tree(vxm_nbt_writer *writer, const vxm_blocks *blocks, uin
   return status;
 }
 
-static vxm_status write_blocks(vxm_output *output, const vxm_blocks *blocks, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_nbt_writer *writer = NULL;
-  uint16_t *row = vxm_alloc(blocks->field->context, (size_t)blocks->size[0], sizeof *row, &local);
-  unsigned char *bytes = row ? vxm_alloc(blocks->field->context, (size_t)blocks->size[0], 3, &local) : NULL;
-  vxm_status status = local.code;
-  if (status == VXM_OK)
-    status = vxm_nbt_open(&writer, blocks->field->context, output, &local);
-  if (status == VXM_OK)
-    status = put_tree(writer, blocks, row, bytes, &local);
-  vxm_nbt_close(writer);
-  vxm_free(blocks->field->context, bytes);
-  vxm_free(blocks->field->context, row);
-  if (status != VXM_OK)
-    vxm_error_pass(error, &local);
+static vxm_status put_tree(vxm_nbt_writer *writer, const vxm_blocks *blocks, uint16_t *row,
+                           vxm_error *error) {
+  vxm_context *context = blocks->field->context;
+  unsigned char *bytes = vxm_alloc(context, (size_t)blocks->size[0], 3, error);
+  vxm_status status = bytes ? put_packed(writer, blocks, row, bytes, error) : error->code;
+  vxm_free(context, bytes);
   return status;
 }
 
 static vxm_status write_schem(vxm_output *output, const vxm_field *field, vxm_error *error) {
-  return vxm_blocks_write(output, field, write_blocks, error);
+  return vxm_blocks_write(output, field, put_tree, error);
 }
 
 static vxm_status check_field(const vxm_field *field, const char *path, vxm_error *error) {
-  vxm_status status = vxm_blocks_check_field(field, path, error);
-  return status == VXM_OK ? check_space(&field->space, path, error) : status;
+  return vxm_blocks_check_field(field, path, ".schem", UINT16_MAX, error);
 }
 
 static vxm_status write_field(const vxm_field *field, const char *path, vxm_error *error) {

@@ -277,17 +277,10 @@ static vxm_status write_vox(vxm_output *output, const vxm_field *field, vxm_erro
 }
 
 static vxm_status check_field(const vxm_field *field, const char *path, vxm_error *error) {
-  vxm_field_range range = VXM_FIELD_RANGE_INIT;
-  if (field->channels == 4)
-    return VXM_OK;
-  vxm_status status = vxm_field_measure(&range, field, error);
-  if (status == VXM_OK && (vxm_scalar_is_float(field->scalar) || range.min < 0 || range.max > VXM_VOX_COLORS))
-    status = vxm_field_refuse(
-        field, path, VXM_ERROR_RANGE,
-        "has numbers that are no labels from 0 to 255, which .vox holds; choose a threshold, or "
-        ".npy or .nrrd",
-        error);
-  return status;
+  return vxm_field_check_labels(field, path, VXM_VOX_COLORS,
+                                "has numbers that are no labels from 0 to 255, which .vox holds; choose a "
+                                "threshold, or .npy or .nrrd",
+                                error);
 }
 
 static vxm_status write_field(const vxm_field *field, const char *path, vxm_error *error) {
