@@ -13,6 +13,11 @@ int vxm_octree_levels(const vxm_space *space) {
   return levels;
 }
 
+static void renew_serial(vxm_sparse *sparse) {
+  static atomic_uint_fast64_t last_serial;
+  sparse->serial = atomic_fetch_add(&last_serial, 1) + 1;
+}
+
 vxm_status vxm_octree_new(vxm_sparse **out, vxm_context *context, const vxm_space *space, vxm_error *error) {
   vxm_context *owner;
   *out = NULL;
@@ -29,8 +34,7 @@ vxm_status vxm_octree_new(vxm_sparse **out, vxm_context *context, const vxm_spac
   sparse->context = owner;
   sparse->space = *space;
   sparse->levels = vxm_octree_levels(space);
-  static atomic_uint_fast64_t last_serial;
-  sparse->serial = atomic_fetch_add(&last_serial, 1) + 1;
+  renew_serial(sparse);
   *out = sparse;
   return VXM_OK;
 }
@@ -87,6 +91,15 @@ const vxm_octree_node *vxm_octree_node_at(const vxm_sparse *sparse, int level, i
 
 const vxm_octree_node *vxm_octree_low_node(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
   return vxm_octree_node_at(sparse, 0, i, j, k);
+}
+
+void vxm_octree_set_bits(vxm_sparse *sparse, int64_t i, int64_t j, int64_t k, uint64_t bits) {
+  const vxm_octree_node *node = vxm_octree_low_node(sparse, i, j, k);
+  unsigned child = vxm_octree_child((unsigned)(i >> 2), (unsigned)(j >> 2), (unsigned)(k >> 2));
+  if (!(node->mixed >> child & 1))
+    return;
+  sparse->bricks[vxm_octree_index(node, child)] |= bits;
+  renew_serial(sparse);
 }
 
 bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {

@@ -91,6 +91,8 @@ void vxm_octree_walk_layers(const vxm_sparse *sparse, int axis, int64_t begin, i
 
 /** The brick with voxel (i,j,k), which lies within the dimensions. */
 uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
+/** Sets voxels of the brick with voxel (i,j,k) if it is mixed, which it is to stay; the serial changes. */
+void vxm_octree_set_bits(vxm_sparse *sparse, int64_t i, int64_t j, int64_t k, uint64_t bits);
 /** The node of a level with voxel (i,j,k), which lies within the dimensions; or one that is as empty or as
  * full, where a higher one is. */
 const vxm_octree_node *vxm_octree_node_at(const vxm_sparse *sparse, int level, int64_t i, int64_t j,

@@ -34,12 +34,13 @@ typedef struct vxm_strip {
   size_t count;
 } vxm_strip;
 
-/** What a worker has made, by how long it is needed. */
+/** What a worker has made, by how long it is needed. Each has cache lines of its own: it changes with every
+ * node. */
 typedef struct vxm_strip_arena {
-  vxm_block_arena bricks;    /**< to the end */
-  vxm_block_arena seeds;     /**< above level 0: until all of level 0 are gathered */
-  vxm_block_arena strips[2]; /**< until they are merged to those of the next level, in turn */
-  vxm_strip_item *items;     /**< of the strip being made */
+  _Alignas(64) vxm_block_arena bricks; /**< to the end */
+  vxm_block_arena seeds;               /**< above level 0: until all of level 0 are gathered */
+  vxm_block_arena strips[2];           /**< until they are merged to those of the next level, in turn */
+  vxm_strip_item *items;               /**< of the strip being made */
   size_t item_count, item_capacity;
 } vxm_strip_arena;
 

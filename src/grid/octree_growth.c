@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/octree_growth.h"
+#include "base/threads.h"
 
 #include <string.h>
 
@@ -45,36 +46,112 @@ vxm_octree_state vxm_octree_growth_node(vxm_octree_growth *growth, int level, ui
   return VXM_OCTREE_MIXED;
 }
 
-/** The mixed children of nodes side by side. */
-typedef struct run {
-  size_t begin, end;
-} run;
+/* ---- Parts of other octrees ---- */
 
-static run children_of(const vxm_octree_node *nodes, run of) {
+/** Runs of so many are left for the end; shorter ones would take more room than they save time. */
+enum { LONG_RUN = 512, SHARES = 64 };
+
+/** Copies what goes to begin..end-1 of the bricks, for level -1, or of the nodes of a level. */
+static void copy_run(vxm_sparse *to, int level, const vxm_octree_run *run, size_t begin, size_t end) {
+  size_t from = run->begin + (begin - run->to);
+  if (level < 0) {
+    memcpy(to->bricks + begin, run->from->bricks + from, (end - begin) * sizeof *to->bricks);
+    return;
+  }
+  for (size_t n = begin; n < end; n++, from++) {
+    vxm_octree_node node = run->from->nodes[level][from];
+    node.first += node.mixed ? run->shift : 0;
+    to->nodes[level][n] = node;
+  }
+}
+
+typedef struct copy_job {
+  vxm_sparse *to;
+  int level;
+  const vxm_octree_runs *runs;
+  size_t count, shares; /**< of the level */
+} copy_job;
+
+static void copy_share(size_t task, int worker, void *payload) {
+  (void)worker;
+  const copy_job *job = payload;
+  const vxm_octree_run *list = job->runs->list;
+  size_t begin = vxm_slice_begin(job->count, job->shares, task);
+  size_t end = vxm_slice_begin(job->count, job->shares, task + 1), first = 0;
+  for (size_t behind = job->runs->count; first < behind;) { /* the first that reaches beyond `begin` */
+    size_t middle = first + (behind - first) / 2;
+    if (list[middle].to + list[middle].count <= begin)
+      first = middle + 1;
+    else
+      behind = middle;
+  }
+  for (; first < job->runs->count && list[first].to < end; first++) {
+    size_t low = list[first].to, high = low + list[first].count;
+    copy_run(job->to, job->level, &list[first], low < begin ? begin : low, high < end ? high : end);
+  }
+}
+
+/** Copies all runs that were left for the end. */
+static void copy_runs(vxm_octree_growth *growth) {
+  vxm_sparse *sparse = growth->sparse;
+  for (int l = -1; l < sparse->levels; l++) {
+    copy_job job = {sparse, l, &growth->runs[1 + l], l < 0 ? sparse->brick_count : sparse->node_count[l], 0};
+    job.shares = job.count / LONG_RUN < SHARES ? job.count / LONG_RUN + 1 : SHARES;
+    if (job.runs->count > 0)
+      vxm_parallel(sparse->context, job.shares, copy_share, &job);
+  }
+}
+
+/** Adds a run, which has room. */
+static void add_run(vxm_octree_growth *growth, int level, const vxm_octree_run *run) {
+  vxm_octree_runs *runs = &growth->runs[1 + level];
+  vxm_octree_run *last = runs->count > 0 ? &runs->list[runs->count - 1] : NULL;
+  if (last && last->from == run->from && last->begin + last->count == run->begin &&
+      last->to + last->count == run->to && last->shift == run->shift) {
+    last->count += run->count;
+    return;
+  }
+  if (last && last->count < LONG_RUN) {
+    copy_run(growth->sparse, level, last, last->to, last->to + last->count);
+    *last = *run;
+    return;
+  }
+  growth->status = vxm_grow(growth->sparse->context, (void **)&runs->list, &runs->capacity, runs->count + 1,
+                            sizeof *runs->list, growth->error);
+  if (growth->status == VXM_OK)
+    runs->list[runs->count++] = *run;
+}
+
+/** Nodes or bricks side by side. */
+typedef struct range {
+  size_t begin, end;
+} range;
+
+/** The mixed children of nodes. */
+static range children_of(const vxm_octree_node *nodes, range of) {
   while (of.begin < of.end && nodes[of.begin].mixed == 0)
     of.begin++;
   while (of.begin < of.end && nodes[of.end - 1].mixed == 0)
     of.end--;
   if (of.begin == of.end)
-    return (run){0, 0};
+    return (range){0, 0};
   const vxm_octree_node *last = &nodes[of.end - 1];
-  return (run){(size_t)nodes[of.begin].first, (size_t)last->first + (size_t)vxm_popcount(last->mixed)};
+  return (range){(size_t)nodes[of.begin].first, (size_t)last->first + (size_t)vxm_popcount(last->mixed)};
 }
 
 vxm_octree_state vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_sparse *from, int level,
                                         size_t node) {
   vxm_sparse *sparse = growth->sparse;
-  run here = {node, node + 1};
+  range here = {node, node + 1};
   for (; level >= 0 && here.begin < here.end && growth->status == VXM_OK; level--) {
-    size_t *count = &sparse->node_count[level], first = vxm_octree_growth_next(growth, level);
-    run below = children_of(from->nodes[level], here);
+    size_t *count = &sparse->node_count[level], more = here.end - here.begin;
+    range below = children_of(from->nodes[level], here);
+    uint64_t shift = vxm_octree_growth_next(growth, level) - below.begin;
     growth->status = vxm_grow(sparse->context, (void **)&sparse->nodes[level], &growth->node_capacity[level],
-                              *count + here.end - here.begin, sizeof *sparse->nodes[level], growth->error);
-    for (size_t n = here.begin; n < here.end && growth->status == VXM_OK; n++) {
-      vxm_octree_node copy = from->nodes[level][n];
-      copy.first = copy.mixed ? copy.first - below.begin + first : 0;
-      sparse->nodes[level][(*count)++] = copy;
-    }
+                              *count + more, sizeof *sparse->nodes[level], growth->error);
+    if (growth->status == VXM_OK)
+      add_run(growth, level, &(vxm_octree_run){from, here.begin, more, *count, shift});
+    *count += growth->status == VXM_OK ? more : 0;
     here = below;
   }
   size_t bricks = here.end - here.begin;
@@ -82,13 +159,17 @@ vxm_octree_state vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_spa
     growth->status = vxm_grow(sparse->context, (void **)&sparse->bricks, &growth->brick_capacity,
                               sparse->brick_count + bricks, sizeof *sparse->bricks, growth->error);
   if (growth->status == VXM_OK && bricks > 0)
-    memcpy(sparse->bricks + sparse->brick_count, from->bricks + here.begin, bricks * sizeof *sparse->bricks);
+    add_run(growth, -1, &(vxm_octree_run){from, here.begin, bricks, sparse->brick_count, 0});
   sparse->brick_count += growth->status == VXM_OK ? bricks : 0;
   return growth->status == VXM_OK ? VXM_OCTREE_MIXED : VXM_OCTREE_EMPTY;
 }
 
 vxm_status vxm_octree_growth_end(vxm_sparse **out, vxm_octree_growth *growth) {
   *out = NULL;
+  if (growth->status == VXM_OK)
+    copy_runs(growth);
+  for (int l = 0; l <= VXM_OCTREE_LEVELS && growth->sparse; l++)
+    vxm_free(growth->sparse->context, growth->runs[l].list);
   if (growth->status == VXM_OK)
     *out = growth->sparse;
   else

@@ -8,10 +8,25 @@
 /** What a brick or node turned out to be. */
 typedef enum vxm_octree_state { VXM_OCTREE_EMPTY, VXM_OCTREE_FULL, VXM_OCTREE_MIXED } vxm_octree_state;
 
+/** Nodes of a level, or bricks, side by side in another octree, and where they go. */
+typedef struct vxm_octree_run {
+  const vxm_sparse *from;
+  size_t begin, count, to;
+  uint64_t shift; /**< what is added to `first` of nodes that have mixed children */
+} vxm_octree_run;
+
+/** Runs in the order of where they go, which are copied in the end, by all threads: these share pages that
+ * are touched for the first time, too. */
+typedef struct vxm_octree_runs {
+  vxm_octree_run *list;
+  size_t count, capacity;
+} vxm_octree_runs;
+
 typedef struct vxm_octree_growth {
   vxm_sparse *sparse; /**< NULL once it was taken */
   size_t node_capacity[VXM_OCTREE_LEVELS], brick_capacity;
-  vxm_status status; /**< after the first failure nothing is added any more */
+  vxm_octree_runs runs[1 + VXM_OCTREE_LEVELS]; /**< of bricks, then of the nodes of each level */
+  vxm_status status;                           /**< after the first failure nothing is added any more */
   vxm_error *error;
 } vxm_octree_growth;
 
@@ -33,7 +48,8 @@ vxm_octree_state vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bit
 vxm_octree_state vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
                                         size_t first);
 
-/** Adds a mixed node of another octree of as many levels, below its root, with all that is below it. */
+/** Adds a mixed node of another octree of as many levels, below its root, with all that is below it; that one
+ * is to stay as it is until the end. */
 vxm_octree_state vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_sparse *from, int level,
                                         size_t node);
 

@@ -185,32 +185,65 @@ static uint64_t apply(int op, uint64_t a, uint64_t b) {
                                       : a ^ b;
 }
 
+static void check_set_operations(const vxm_grid *a, const vxm_grid *b) {
+  vxm_grid *c = new_grid(contexts[0], a->space);
+  vxm_sparse *p = octree_of(a), *q = octree_of(b), *made;
+  for (int op = VXM_SET_UNION; op <= VXM_SET_COMPLEMENT; op++) {
+    for (size_t w = 0; w < c->word_count; w++) {
+      bool last = w % c->row_words == c->row_words - 1;
+      c->words[w] = apply(op, a->words[w], b->words[w]) & (last ? vxm_grid_tail_mask(c) : ~UINT64_C(0));
+    }
+    const vxm_sparse *second = op == VXM_SET_COMPLEMENT ? NULL : q;
+    assert_int_equal(vxm_sparse_combine(&made, p, second, (vxm_set_operation)op, NULL), VXM_OK);
+    assert_same_grid(made, c);
+    vxm_sparse *expected = octree_of(c);
+    assert_same_octree(made, expected);
+    vxm_sparse_destroy(expected);
+    vxm_sparse_destroy(made);
+  }
+  vxm_sparse_destroy(p);
+  vxm_sparse_destroy(q);
+  vxm_grid_destroy(c);
+}
+
 static void test_set_operations(void **state) {
   (void)state;
   vxm_rng rng = {64};
   for (int round = 0; round < 72; round++) {
     vxm_grid *a = random_grid(contexts[round % 3], &rng, round % KINDS);
-    vxm_grid *b = new_grid(contexts[0], a->space), *c = new_grid(contexts[0], a->space);
+    vxm_grid *b = new_grid(contexts[0], a->space);
     fill_random(b, &rng, round / KINDS % KINDS);
-    vxm_sparse *p = octree_of(a), *q = octree_of(b), *made;
-    for (int op = VXM_SET_UNION; op <= VXM_SET_COMPLEMENT; op++) {
-      for (size_t w = 0; w < c->word_count; w++) {
-        bool last = w % c->row_words == c->row_words - 1;
-        c->words[w] = apply(op, a->words[w], b->words[w]) & (last ? vxm_grid_tail_mask(c) : ~UINT64_C(0));
-      }
-      const vxm_sparse *second = op == VXM_SET_COMPLEMENT ? NULL : q;
-      assert_int_equal(vxm_sparse_combine(&made, p, second, (vxm_set_operation)op, NULL), VXM_OK);
-      assert_same_grid(made, c);
-      vxm_sparse *expected = octree_of(c);
-      assert_same_octree(made, expected);
-      vxm_sparse_destroy(expected);
-      vxm_sparse_destroy(made);
-    }
-    vxm_sparse_destroy(p);
-    vxm_sparse_destroy(q);
+    check_set_operations(a, b);
     vxm_grid_destroy(a);
     vxm_grid_destroy(b);
-    vxm_grid_destroy(c);
+  }
+}
+
+/** Octrees that are large next to what changes: most of them is copied in long runs, by all threads. */
+static void test_few_changes(void **state) {
+  (void)state;
+  vxm_rng rng = {69};
+  for (int round = 0; round < 6; round++) {
+    vxm_grid *a = new_grid(contexts[round % 3], unit_space(256, 250, 180));
+    vxm_grid *b = new_grid(contexts[0], a->space);
+    fill_random(a, &rng, round < 3 ? 1 : 2);
+    for (int cube = 0; cube < 5; cube++) { /* nodes that are empty or full, between the others */
+      const int64_t *n = a->space.dims;
+      int64_t at[3], side = 16 << vxm_rng_below(&rng, 3);
+      for (int d = 0; d < 3; d++)
+        at[d] = (int64_t)vxm_rng_below(&rng, (uint64_t)(n[d] / side)) * side;
+      for (int64_t row = 0; row < side * side; row++)
+        for (int64_t i = 0; i < side; i++)
+          vxm_grid_set(a, at[0] + i, at[1] + row % side, at[2] + row / side, cube % 2);
+      for (int few = 0; few < 4; few++)
+        vxm_grid_set(b, (int64_t)vxm_rng_below(&rng, (uint64_t)n[0]),
+                     (int64_t)vxm_rng_below(&rng, (uint64_t)n[1]),
+                     (int64_t)vxm_rng_below(&rng, (uint64_t)n[2]), true);
+    }
+    check_set_operations(a, b);
+    check_set_operations(b, a);
+    vxm_grid_destroy(a);
+    vxm_grid_destroy(b);
   }
 }
 
@@ -388,7 +421,7 @@ int main(void) {
       cmocka_unit_test(test_ragged_runs),    cmocka_unit_test(test_windows),
       cmocka_unit_test(test_set_operations), cmocka_unit_test(test_wrong_arguments),
       cmocka_unit_test(test_pieces),         cmocka_unit_test(test_files),
-      cmocka_unit_test(test_memory_limit),
+      cmocka_unit_test(test_memory_limit),   cmocka_unit_test(test_few_changes),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -93,13 +93,17 @@ static void test_many_sheets(void **state) {
 static void check_sparse_way(vxm_model *model, const vxm_grid *whole, int64_t thin_voxels,
                              double thin_share) {
   vxm_error error = VXM_ERROR_INIT;
-  vxm_sparse *octree;
+  vxm_sparse *octree, *again;
   vxm_grid *grid;
   vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   if (vxm_model_sparse(&octree, &report, model, &whole->space, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_int_equal(vxm_sparse_to_grid(&grid, octree, NULL), VXM_OK);
   assert_equal_bits(grid, whole);
+  assert_int_equal(vxm_sparse_from_grid(&again, whole, NULL), VXM_OK); /* nodes are no more than are needed */
+  assert_int_equal(octree->brick_count, again->brick_count);
+  assert_int_equal(vxm_octree_nodes(octree), vxm_octree_nodes(again));
+  vxm_sparse_destroy(again);
   assert_int_equal(report.thin_voxels, thin_voxels);
   assert_true(fabs(report.thin_share - thin_share) < 1e-9);
   vxm_grid_destroy(grid);

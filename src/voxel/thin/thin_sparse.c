@@ -1,100 +1,88 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/thin/thin_sparse.h"
+#include "grid/octree_pieces.h"
 #include "mesh/sort.h"
 
-/* Voxels are sorted by strip, node, and brick of the octree's builder: z and y in sixteens, then x. */
-enum { AXIS_BITS = VXM_VIEW_AXIS_BITS, NODE_SHIFT = 4 };
+enum { AXIS_BITS = VXM_VIEW_AXIS_BITS };
 
-static void place_of(uint64_t bit, uint64_t at[3]) {
-  for (int a = 0; a < 3; a++)
-    at[a] = bit >> (AXIS_BITS * a) & ((UINT64_C(1) << AXIS_BITS) - 1);
-}
+/** Voxels of a brick. */
+typedef struct brick {
+  int64_t at[3];
+  uint64_t bits;
+} brick;
 
-/** Its place among the bits of a node: the number of its brick, and the bit there. */
-static uint64_t in_node(uint64_t bit) {
-  uint64_t at[3];
-  place_of(bit, at);
-  unsigned brick[3];
-  for (int a = 0; a < 3; a++)
-    brick[a] = (unsigned)(at[a] >> 2) & 3;
-  uint64_t row = (brick[1] & 1) | (brick[2] & 1) << 1 | (brick[1] >> 1) << 2 | (brick[2] >> 1) << 3;
-  return (16 * brick[0] + row) << 6 | (at[2] & 3) << 4 | (at[1] & 3) << 2 | (at[0] & 3);
-}
+/* A key is a voxel's brick, which are sorted by z, y and x, above its bit in that. */
+enum { BRICK_SHIFT = 6, BRICK_BITS = AXIS_BITS - 2 };
 
-/** Voxels with the same strip are one run of `nodes`, the same node a run in that. */
-static void add_strip(vxm_octree_builder *builder, const uint64_t *nodes, const uint64_t *voxels,
-                      size_t count) {
-  const uint64_t mask = (UINT64_C(1) << AXIS_BITS) - 1;
-  for (size_t v = 0; v < count;) {
-    uint64_t bricks[VXM_STRIP_BRICKS] = {0}, node = nodes[v];
-    for (; v < count && nodes[v] == node; v++) {
-      uint64_t at = in_node(voxels[v]);
-      bricks[at >> 6] |= UINT64_C(1) << (at & 63);
-    }
-    vxm_strip_add_node(builder, 0, (size_t)(node & mask), bricks);
-  }
-  vxm_strip_end(builder, 0, (size_t)(nodes[0] >> AXIS_BITS & mask), (size_t)(nodes[0] >> 2 * AXIS_BITS));
-}
-
-/** A voxel of a node from its number: node and place put together sort by node, and hold both. */
-static uint64_t voxel_of(uint64_t node, uint64_t place) {
-  const uint64_t mask = (UINT64_C(1) << AXIS_BITS) - 1;
-  uint64_t at[3], in[3] = {place & 15, place >> 4 & 15, place >> 8 & 15}, bit = 0;
+static uint64_t key_of(uint64_t voxel) {
+  uint64_t key = 0, at[3];
   for (int a = 0; a < 3; a++) {
-    at[a] = (node >> (AXIS_BITS * a) & mask) << NODE_SHIFT | in[a];
-    bit |= at[a] << (AXIS_BITS * a);
+    at[a] = voxel >> (AXIS_BITS * a) & ((UINT64_C(1) << AXIS_BITS) - 1);
+    key |= (at[a] >> 2) << (BRICK_BITS * a + BRICK_SHIFT);
   }
-  return bit;
+  return key | vxm_octree_bit((int64_t)at[0], (int64_t)at[1], (int64_t)at[2]);
 }
 
-/** Sorts voxels by node. */
-static void sort_by_node(uint64_t *voxels, uint64_t *nodes, uint64_t *scratch, size_t count) {
-  enum { NODE_BITS = 17 }; /* of a coordinate: 2^20 voxels are 2^16 nodes */
-  const uint64_t mask = (UINT64_C(1) << NODE_BITS) - 1;
-  for (size_t v = 0; v < count; v++) {
-    uint64_t at[3];
-    place_of(voxels[v], at);
-    uint64_t place = (at[0] & 15) | (at[1] & 15) << 4 | (at[2] & 15) << 8;
-    voxels[v] = (at[2] >> NODE_SHIFT) << (2 * NODE_BITS + 12) | (at[1] >> NODE_SHIFT) << (NODE_BITS + 12) |
-                (at[0] >> NODE_SHIFT) << 12 | place;
-  }
-  vxm_sort_keys(voxels, scratch, count);
-  for (size_t v = 0; v < count; v++) {
-    uint64_t key = voxels[v];
-    nodes[v] = (key >> (2 * NODE_BITS + 12)) << 2 * AXIS_BITS |
-               (key >> (NODE_BITS + 12) & mask) << AXIS_BITS | (key >> 12 & mask);
-    voxels[v] = voxel_of(nodes[v], key & 0xfff);
-  }
+/** The brick of key k; returns the first key of the next one. */
+static size_t take_brick(brick *out, const uint64_t *keys, size_t count, size_t k) {
+  const uint64_t number = keys[k] >> BRICK_SHIFT;
+  for (int a = 0; a < 3; a++)
+    out->at[a] = (int64_t)(number >> BRICK_BITS * a & ((UINT64_C(1) << BRICK_BITS) - 1)) << 2;
+  for (out->bits = 0; k < count && keys[k] >> BRICK_SHIFT == number; k++)
+    out->bits |= UINT64_C(1) << (keys[k] & 63);
+  return k;
 }
 
-/** The octree of a set of voxels. */
-static vxm_status make_octree(vxm_sparse **out, const vxm_voxel_set *set, vxm_context *context,
-                              const vxm_space *space, vxm_error *error) {
+/** Whether a brick may be changed where it stands: it is mixed, and stays so. */
+static bool stays_mixed(const vxm_sparse *octree, const brick *b) {
+  uint64_t before = vxm_octree_brick(octree, b->at[0], b->at[1], b->at[2]);
+  return before && ~(before | b->bits);
+}
+
+/** Puts the bricks that have no place, or are to lose it, to an octree. */
+static vxm_status unite_others(vxm_sparse **octree, const uint64_t *keys, size_t count, vxm_error *error) {
+  vxm_octree_pieces others = {.context = (*octree)->context, .space = (*octree)->space, .error = error};
+  vxm_sparse *added = NULL, *both = NULL;
+  brick b;
+  for (size_t k = 0; k < count;) {
+    k = take_brick(&b, keys, count, k);
+    if (!stays_mixed(*octree, &b))
+      vxm_octree_pieces_brick(&others, b.at, b.bits);
+  }
+  if (others.status == VXM_OK && others.count == 0)
+    return VXM_OK;
+  vxm_status status = vxm_octree_pieces_end(&added, &others);
+  if (status == VXM_OK)
+    status = vxm_octree_combine(&both, *octree, added, VXM_SET_UNION, error);
+  vxm_sparse_destroy(added);
+  if (status != VXM_OK)
+    return status;
+  vxm_sparse_destroy(*octree);
+  *octree = both;
+  return VXM_OK;
+}
+
+/** Puts voxels to an octree. Most lie in bricks that have a place there: so few are united with it, and these
+ * first, for which memory may not suffice. */
+static vxm_status add_voxels(vxm_sparse **octree, const vxm_voxel_set *set, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  *out = NULL;
-  uint64_t *voxels = vxm_alloc(context, 3 * set->count, sizeof *voxels, &local), *nodes = voxels + set->count;
-  if (!voxels) {
+  uint64_t *keys = vxm_alloc(set->context, 2 * set->count, sizeof *keys, &local);
+  if (!keys) {
     vxm_error_pass(error, &local);
     return local.code;
   }
   size_t count = 0;
   for (size_t s = 0; s < set->size; s++)
     if (set->slots[s])
-      voxels[count++] = set->slots[s] - 1;
-  sort_by_node(voxels, nodes, nodes + count, count);
-  vxm_octree_builder builder;
-  vxm_status status = vxm_octree_builder_create(&builder, context, space, error);
-  for (size_t v = 0, next; v < count && status == VXM_OK; v = next) {
-    uint64_t strip = nodes[v] >> AXIS_BITS;
-    for (next = v; next < count && nodes[next] >> AXIS_BITS == strip; next++)
-      ;
-    add_strip(&builder, nodes + v, voxels + v, next - v);
-    status = vxm_octree_builder_check(&builder, error);
+      keys[count++] = key_of(set->slots[s] - 1);
+  vxm_sort_keys(keys, keys + count, count);
+  vxm_status status = unite_others(octree, keys, count, error);
+  brick b;
+  for (size_t k = 0; k < count && status == VXM_OK;) {
+    k = take_brick(&b, keys, count, k);
+    vxm_octree_set_bits(*octree, b.at[0], b.at[1], b.at[2], b.bits);
   }
-  if (status == VXM_OK)
-    status = vxm_octree_builder_end(out, &builder, error);
-  vxm_octree_builder_destroy(&builder);
-  vxm_free(context, voxels);
+  vxm_free(set->context, keys);
   return status;
 }
 
@@ -149,19 +137,11 @@ static void release_room(vxm_thin_adder *thin) {
 vxm_status vxm_thin_add_sparse(vxm_thin_adder *thin, vxm_sparse **octree, const vxm_triangle_set *triangles,
                                const vxm_snapped_points *placed, int separating, vxm_error *error) {
   vxm_voxel_set set = {.context = thin->context};
-  vxm_sparse *added = NULL, *both = NULL;
   vxm_status status = find_by_slices(thin, &set, *octree, triangles, placed, separating, error);
-  if (status == VXM_OK && set.count > 0)
-    status = make_octree(&added, &set, thin->context, &(*octree)->space, error);
-  vxm_voxel_set_destroy(&set);
   if (vxm_octree_bytes(*octree) >= large_octree)
     release_room(thin);
-  if (status == VXM_OK && added)
-    status = vxm_octree_combine(&both, *octree, added, VXM_SET_UNION, error);
-  if (both) {
-    vxm_sparse_destroy(*octree);
-    *octree = both;
-  }
-  vxm_sparse_destroy(added);
+  if (status == VXM_OK && set.count > 0)
+    status = add_voxels(octree, &set, error);
+  vxm_voxel_set_destroy(&set);
   return status;
 }

@@ -3,7 +3,7 @@
 #ifndef VXM_VOXEL_THIN_THIN_SPARSE_H
 #define VXM_VOXEL_THIN_THIN_SPARSE_H
 
-#include "grid/octree_build.h"
+#include "grid/octree.h"
 #include "voxel/thin/thin.h"
 
 /**
