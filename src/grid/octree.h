@@ -47,6 +47,15 @@ static inline int64_t vxm_octree_side(int level) {
   return INT64_C(4) << (2 * level);
 }
 
+/** Whether a cube has voxels of the box from `begin` to before `end`. */
+static inline bool vxm_cube_meets(const int64_t at[3], int64_t side, const int64_t begin[3],
+                                  const int64_t end[3]) {
+  bool meets = true;
+  for (int a = 0; a < 3; a++)
+    meets &= at[a] < end[a] && at[a] + side > begin[a];
+  return meets;
+}
+
 /** The child at (x,y,z), each 0 to 3. */
 static inline unsigned vxm_octree_child(unsigned x, unsigned y, unsigned z) {
   static const unsigned char spread[4] = {0, 1, 8, 9};
