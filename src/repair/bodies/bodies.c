@@ -222,12 +222,12 @@ static bool divide(parting *p, const uint8_t *touches, bool mixed, bool *changed
   p->result.count = 0;
   if (!put_faces(p, touches)) /* once more, without what is none */
     return false;
-  state->shared = count_shared(p);
+  state->shared_faces = count_shared(p);
   int64_t added = 0;
   vxm_status status = vxm_body_faces_build(&p->result, state, &p->rims, &added, &p->error);
   if (status != VXM_OK)
     return fail(p, status);
-  state->counts[VXM_PASS_SEPARATION] += added;
+  state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
   *changed = true;
   return true;
 }
@@ -277,7 +277,7 @@ static bool cut_sheets(parting *p, bool *changed) {
   int64_t added = 0;
   if (!state->has_patches && vxm_cut_hanging_sheets(state, &added, &p->error) != VXM_OK)
     return false;
-  state->counts[VXM_PASS_SEPARATION] += added;
+  state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
   *changed = added > 0;
   return true;
 }

@@ -339,7 +339,7 @@ static vxm_status align(aligning *a, bool *changed, vxm_error *error) {
   return status;
 }
 
-vxm_status vxm_align_diagonals(vxm_repair_state *state, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_other_diagonals(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   vxm_status status = vxm_repair_state_count_edges(state, error);
   if (status != VXM_OK || state->edges.crowded == 0)
