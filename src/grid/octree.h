@@ -16,6 +16,7 @@
 #define VXM_GRID_OCTREE_H
 
 #include "grid/window.h"
+#include "voxmend/sparse.h"
 
 /** Levels of nodes at most: 4^10 = VXM_DIM_MAX. */
 enum { VXM_OCTREE_LEVELS = 10 };

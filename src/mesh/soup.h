@@ -6,6 +6,7 @@
 #include "base/context.h"
 #include "base/warnings.h"
 #include "mesh/appearance.h"
+#include "voxmend/repair.h"
 
 #ifdef __cplusplus
 extern "C" {
