@@ -4,6 +4,7 @@
 #define VXM_API_API_OPTIONS_H
 
 #include "base/error.h"
+#include "voxmend/voxelize.h"
 
 /** The caller's options or the defaults, if every choice is one of its enum. */
 vxm_status vxm_choose_voxelize_options(vxm_voxelize_options *chosen, const vxm_voxelize_options *options,

@@ -4,6 +4,7 @@
 #define VXM_AUGMENT_DENSITY_H
 
 #include "grid/window.h"
+#include "voxmend/sampler.h"
 
 /**
  * Writes the shares of all voxels in the order of the window, by the rounding of vxm_model_coverage.

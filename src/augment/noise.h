@@ -7,6 +7,7 @@
 #define VXM_AUGMENT_NOISE_H
 
 #include "base/context.h"
+#include "voxmend/sampler.h"
 
 typedef struct vxm_noise {
   uint64_t serial;     /**< no two that hold other vectors have the same */

@@ -4,6 +4,7 @@
 #define VXM_AUGMENT_POSE_H
 
 #include "base/context.h"
+#include "voxmend/sampler.h"
 
 /** What is known of a model: the box of its points. */
 typedef struct vxm_model_extent {

@@ -4,6 +4,7 @@
 #define VXM_AUGMENT_UNPACK_BITS_H
 
 #include "base/context.h"
+#include "voxmend/sampler.h"
 
 /** Bytes of a row of `dim` voxels. */
 size_t vxm_unpack_row_bytes(vxm_voxel_format voxels, int64_t dim);

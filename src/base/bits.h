@@ -38,6 +38,10 @@ static inline int64_t vxm_min(int64_t a, int64_t b) {
   return a < b ? a : b;
 }
 
+static inline size_t vxm_min_size(size_t a, size_t b) {
+  return a < b ? a : b;
+}
+
 static inline int64_t vxm_max(int64_t a, int64_t b) {
   return a > b ? a : b;
 }

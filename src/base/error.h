@@ -4,7 +4,7 @@
 #define VXM_BASE_ERROR_H
 
 #include "base/sized.h"
-#include "voxmend.h"
+#include "voxmend/base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -8,7 +8,7 @@
 #define VXM_BASE_MODULE_H
 
 #include "build_hash.h"
-#include "voxmend.h"
+#include "voxmend/base.h"
 
 #ifdef __cplusplus
 extern "C" {

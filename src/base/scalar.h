@@ -3,7 +3,7 @@
 #ifndef VXM_BASE_SCALAR_H
 #define VXM_BASE_SCALAR_H
 
-#include "voxmend.h"
+#include "voxmend/base.h"
 
 /** Bytes of a value. */
 static inline size_t vxm_scalar_bytes(vxm_scalar scalar) {

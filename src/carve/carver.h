@@ -6,6 +6,7 @@
 #include "carve/convex.h"
 #include "carve/motion.h"
 #include "voxel/model/model_instance.h"
+#include "voxmend/carve.h"
 
 /** Points of the tool, turned, in lattice steps from its origin. */
 typedef struct vxm_turned_points {

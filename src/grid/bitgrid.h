@@ -6,6 +6,7 @@
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/warnings.h"
+#include "voxmend/grid.h"
 
 /** Largest number of voxels along an axis; lattice coordinates and products are sized for it. */
 #define VXM_DIM_MAX (INT64_C(1) << 20)

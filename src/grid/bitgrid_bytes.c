@@ -28,10 +28,6 @@ static size_t columns_of(const transfer *t, size_t w, size_t *first) {
   return end - *first;
 }
 
-static size_t min_size(size_t a, size_t b) {
-  return a < b ? a : b;
-}
-
 /** All voxels of one j: 64 x 64 bits at a time are turned from running along x to running along z. */
 static void unpack_layer(size_t j, int worker, void *payload) {
   transfer *t = payload;
@@ -40,7 +36,7 @@ static void unpack_layer(size_t j, int worker, void *payload) {
   for (size_t w = t->begin / 64; w * 64 < t->end && !is_stopped(t, worker); w++)
     for (size_t k0 = 0; k0 < nz; k0 += 64) {
       uint64_t block[64] = {0};
-      size_t first, count = min_size(nz - k0, 64), columns = columns_of(t, w, &first);
+      size_t first, count = vxm_min_size(nz - k0, 64), columns = columns_of(t, w, &first);
       for (size_t k = 0; k < count; k++)
         block[k] = vxm_grid_row(grid, (int64_t)j, (int64_t)(k0 + k))[w];
       vxm_transpose64(block);
@@ -62,7 +58,7 @@ static void pack_layer(size_t j, int worker, void *payload) {
   for (size_t w = t->begin / 64; w * 64 < t->end && !is_stopped(t, worker); w++)
     for (size_t k0 = 0; k0 < nz; k0 += 64) {
       uint64_t block[64] = {0};
-      size_t first, count = min_size(nz - k0, 64), columns = columns_of(t, w, &first);
+      size_t first, count = vxm_min_size(nz - k0, 64), columns = columns_of(t, w, &first);
       for (size_t c = first; c < first + columns; c++) {
         const uint8_t *from = t->from + ((w * 64 + c - t->begin) * ny + j) * nz + k0;
         for (size_t k = 0; k < count; k++)

@@ -130,13 +130,6 @@ typedef struct walk {
   void *payload;
 } walk;
 
-static bool meets(const walk *w, const int64_t at[3], int64_t side) {
-  bool yes = true;
-  for (int a = 0; a < 3; a++)
-    yes &= at[a] < w->end[a] && at[a] + side > w->begin[a];
-  return yes;
-}
-
 static void walk_node(const walk *w, int level, size_t index, const int64_t at[3]) {
   const vxm_octree_node *node = &w->sparse->nodes[level][index];
   size_t next = (size_t)node->first;
@@ -150,7 +143,7 @@ static void walk_node(const walk *w, int level, size_t index, const int64_t at[3
     vxm_octree_place(child, piece.position);
     for (int a = 0; a < 3; a++)
       piece.position[a] = at[a] + piece.position[a] * side;
-    if (!meets(w, piece.position, side))
+    if (!vxm_cube_meets(piece.position, side, w->begin, w->end))
       continue;
     if (mixed && level > 0) {
       walk_node(w, level - 1, below, piece.position);

@@ -16,6 +16,7 @@
 #define VXM_GRID_OCTREE_H
 
 #include "grid/window.h"
+#include "voxmend/sparse.h"
 
 /** Levels of nodes at most: 4^10 = VXM_DIM_MAX. */
 enum { VXM_OCTREE_LEVELS = 10 };
@@ -45,6 +46,15 @@ vxm_status vxm_octree_new(vxm_sparse **out, vxm_context *context, const vxm_spac
 /** Voxels along a child of a node of a level. */
 static inline int64_t vxm_octree_side(int level) {
   return INT64_C(4) << (2 * level);
+}
+
+/** Whether a cube has voxels of the box from `begin` to before `end`. */
+static inline bool vxm_cube_meets(const int64_t at[3], int64_t side, const int64_t begin[3],
+                                  const int64_t end[3]) {
+  bool meets = true;
+  for (int a = 0; a < 3; a++)
+    meets &= at[a] < end[a] && at[a] + side > begin[a];
+  return meets;
 }
 
 /** The child at (x,y,z), each 0 to 3. */

@@ -4,6 +4,7 @@
 #define VXM_GRID_SPACE_H
 
 #include "mesh/soup.h"
+#include "voxmend/voxelize.h"
 
 /** See vxm_space_fit in voxmend.h. */
 vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,

@@ -4,6 +4,7 @@
 #define VXM_GRIDIO_GRIDIO_H
 
 #include "gridio/common/values.h"
+#include "voxmend/sparse.h"
 
 /**
  * Reads a grid. The format is told by content first and by the extension second. What a file leaves out or

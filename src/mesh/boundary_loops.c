@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/boundary_loops.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/geometry.h"
 #include "mesh/sort.h"
 
@@ -184,9 +185,7 @@ static size_t find_side(const builder *b, uint32_t vertex, uint32_t neighbour) {
 }
 
 static size_t fan_of(const builder *b, size_t side) {
-  while (b->fan[side] != side)
-    side = b->fan[side] = b->fan[b->fan[side]];
-  return side;
+  return vxm_set_of(b->fan, side);
 }
 
 static void join_fans(const builder *b) {

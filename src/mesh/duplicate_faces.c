@@ -149,14 +149,6 @@ static void emit_faces(size_t begin, size_t end, vxm_sink *sink, void *payload) 
   }
 }
 
-/** Power of two that keeps a table of `records` entries at most half full. */
-static size_t table_slots(size_t records) {
-  size_t slots = 16;
-  while (slots < 2 * records)
-    slots *= 2;
-  return slots;
-}
-
 /** Whether two records are of faces with the same least reading. */
 static bool same_kind(const search *s, uint64_t record, uint64_t other) {
   if (record >> HASH_SHIFT != other >> HASH_SHIFT)
@@ -192,7 +184,7 @@ static void search_bucket(size_t bucket, int worker, void *payload) {
   size_t count = s->buckets.begin[bucket + 1] - s->buckets.begin[bucket];
   uint32_t *table = s->tables + (size_t)worker * s->table_size;
   tally *tallies = s->tallies + (size_t)worker * s->buckets.largest;
-  size_t mask = table_slots(count) - 1, same = 0, pairs = 0;
+  size_t mask = vxm_hash_slots(count) - 1, same = 0, pairs = 0;
   memset(table, 0, (mask + 1) * sizeof *table);
   memset(tallies, 0, count * sizeof *tallies);
   for (size_t i = 0; i < count; i++) {
@@ -235,7 +227,7 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
   for (size_t f = 0; copies && f < soup->face_count; f++)
     copies[f] = (vxm_copies){.first = f, .same = 1};
   size_t workers = (size_t)vxm_context_threads(context);
-  s.table_size = table_slots(s.buckets.largest);
+  s.table_size = vxm_hash_slots(s.buckets.largest);
   vxm_error local = VXM_ERROR_INIT;
   s.tables = vxm_alloc(context, workers * s.table_size, sizeof *s.tables, &local);
   s.tallies = s.tables ? vxm_alloc(context, workers * s.buckets.largest, sizeof *s.tallies, &local) : NULL;

@@ -315,21 +315,13 @@ static void link_cell(const search *s, const cells *c, uint32_t list) {
   }
 }
 
-/** Power of two that keeps a table of `records` entries at most half full. */
-static size_t table_slots(size_t records) {
-  size_t slots = 16;
-  while (slots < 2 * records)
-    slots *= 2;
-  return slots;
-}
-
 static void link_bucket(size_t bucket, int worker, void *payload) {
   const search *s = payload;
   cells c = {.records = s->buckets.records + s->buckets.begin[bucket]};
   c.count = s->buckets.begin[bucket + 1] - s->buckets.begin[bucket];
   c.table = s->scratch + (size_t)worker * (s->table_size + s->buckets.largest);
   c.next = c.table + s->table_size;
-  c.mask = table_slots(c.count) - 1;
+  c.mask = vxm_hash_slots(c.count) - 1;
   memset(c.table, 0, (c.mask + 1) * sizeof *c.table);
   for (size_t i = 0; i < c.count; i++) {
     __builtin_prefetch(s->positions + 3 * (size_t)vertex_of(c.records[i]));
@@ -426,7 +418,7 @@ static vxm_status fill_cells(search *s, vxm_context *context, vxm_error *error) 
 }
 
 static vxm_status link_all(search *s, vxm_context *context, vxm_error *error) {
-  s->table_size = table_slots(s->buckets.largest);
+  s->table_size = vxm_hash_slots(s->buckets.largest);
   size_t workers = (size_t)vxm_context_threads(context);
   s->scratch = vxm_alloc(context, workers * (s->table_size + s->buckets.largest), sizeof *s->scratch, error);
   if (!s->scratch)

@@ -6,6 +6,7 @@
 #include "base/context.h"
 #include "base/warnings.h"
 #include "mesh/appearance.h"
+#include "voxmend/repair.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -79,6 +80,15 @@ static inline const uint32_t *vxm_face(const vxm_soup *soup, size_t face, size_t
   uint64_t begin = soup->offsets[face];
   *count = (size_t)(soup->offsets[face + 1] - begin);
   return *count ? soup->indices + begin : soup->indices; /* there may be no corners at all */
+}
+
+/** The most corners of a face; 0 without faces. */
+static inline size_t vxm_largest_face(const vxm_soup *soup) {
+  uint64_t most = 0;
+  for (size_t f = 0; f < soup->face_count; f++)
+    if (soup->offsets[f + 1] - soup->offsets[f] > most)
+      most = soup->offsets[f + 1] - soup->offsets[f];
+  return (size_t)most;
 }
 
 static inline const double *vxm_position(const vxm_soup *soup, size_t vertex) {

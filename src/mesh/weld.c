@@ -36,21 +36,13 @@ static void emit_vertices(size_t begin, size_t end, vxm_sink *sink, void *payloa
   }
 }
 
-/** Power of two that keeps a table of `records` entries at most half full. */
-static size_t table_slots(size_t records) {
-  size_t slots = 16;
-  while (slots < 2 * records)
-    slots *= 2;
-  return slots;
-}
-
 static void weld_bucket(size_t bucket, int worker, void *payload) {
   enum { AHEAD = 12 };
   welding *w = payload;
   const uint64_t *records = w->buckets.records + w->buckets.begin[bucket];
   size_t count = w->buckets.begin[bucket + 1] - w->buckets.begin[bucket];
   uint32_t *table = w->tables + (size_t)worker * w->table_size;
-  size_t mask = table_slots(count) - 1;
+  size_t mask = vxm_hash_slots(count) - 1;
   memset(table, 0, (mask + 1) * sizeof *table);
   for (size_t i = 0; i < count; i++) {
     if (i + AHEAD < count)
@@ -78,7 +70,7 @@ vxm_status vxm_weld_exact(vxm_context *context, const double *positions, size_t 
       vxm_radix_partition_fill(&w.buckets, context, count, bucket_count, emit_vertices, &w, error);
   if (status != VXM_OK)
     return status;
-  w.table_size = table_slots(w.buckets.largest);
+  w.table_size = vxm_hash_slots(w.buckets.largest);
   vxm_error local = VXM_ERROR_INIT;
   w.tables =
       vxm_alloc(context, (size_t)vxm_context_threads(context) * w.table_size, sizeof *w.tables, &local);

@@ -4,6 +4,7 @@
 #define VXM_REMESH_REMESH_H
 
 #include "mesh/soup.h"
+#include "voxmend/voxelize.h"
 
 /** See vxm_mesh_remesh in voxmend.h; the space is chosen and the options are checked. `report` is filled. */
 vxm_status vxm_remesh(vxm_soup **out, vxm_voxelize_report *report, const vxm_soup *soup,

@@ -14,13 +14,13 @@ static vxm_status run_pass(vxm_repair_state *state, vxm_pass_fn pass, double fra
 
 enum { ROUNDS_MAX = 8 };
 
-static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_zero_area,
+static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_degenerate_faces,
                                            vxm_pass_t_junctions, vxm_pass_duplicates, vxm_pass_tolerant_weld};
 enum { PASSES = sizeof round_passes / sizeof *round_passes };
 
 /** How much these have done so far. */
 static int64_t count_round(const vxm_repair_state *state) {
-  return state->counts[VXM_PASS_REPEATED_CORNERS] + state->counts[VXM_PASS_ZERO_AREA] +
+  return state->counts[VXM_PASS_REPEATED_CORNERS] + state->counts[VXM_PASS_DEGENERATE_FACES] +
          state->counts[VXM_PASS_DUPLICATES] + state->counts[VXM_PASS_OPPOSITE_DUPLICATES] +
          state->counts[VXM_PASS_TOLERANT_WELD] + state->counts[VXM_PASS_T_JUNCTIONS];
 }
@@ -66,7 +66,7 @@ static vxm_status settle_again(vxm_repair_state *state, bool *changed, vxm_error
 /** Cuts polygons that are there twice alike, if repeated faces are to be looked at. */
 static vxm_status align_diagonals(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  return state->options.keep_duplicates ? VXM_OK : vxm_align_diagonals(state, changed, error);
+  return state->options.keep_duplicates ? VXM_OK : vxm_pass_other_diagonals(state, changed, error);
 }
 
 /** The passes that make work for each other; then walls in bodies go, if they are to, and faces are turned.
@@ -95,7 +95,7 @@ static vxm_status separate_until_quiet(vxm_repair_state *state, bool *changed, v
   *changed = false;
   for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
     bool turned;
-    status = vxm_pass_separation(state, &more, error);
+    status = vxm_pass_cut_nonmanifold(state, &more, error);
     if (status != VXM_OK || !more)
       break;
     *changed = true;
@@ -118,7 +118,7 @@ static vxm_status run_followed(vxm_repair_state *state, vxm_pass_fn pass, bool *
 }
 
 static vxm_status move_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
-  return run_followed(state, vxm_pass_apart, changed, error);
+  return run_followed(state, vxm_pass_perturb_coincident, changed, error);
 }
 
 static vxm_status collapse_short_edges(vxm_repair_state *state, bool *changed, vxm_error *error) {
@@ -150,20 +150,20 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
     bool turns; /**< what it changes may be turned otherwise */
   } further[] = {{separate_until_quiet, true},
                  {vxm_pass_closing, true},
-                 {vxm_pass_small_parts, true},
+                 {vxm_pass_small_components, true},
                  {vxm_pass_sheets, false},
                  {unite, false},
                  {wrap_the_rest, false},
                  {collapse_short_edges, false},
-                 {vxm_pass_separation, false},
+                 {vxm_pass_cut_nonmanifold, false},
                  {move_apart, true},
                  {vxm_pass_reunion, false},
                  {collapse_short_edges, false},
-                 {vxm_pass_separation, false},
+                 {vxm_pass_cut_nonmanifold, false},
                  {move_apart, true},
                  {vxm_pass_reunion, false},
                  {collapse_short_edges, false},
-                 {vxm_pass_separation, false},
+                 {vxm_pass_cut_nonmanifold, false},
                  {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
@@ -215,10 +215,10 @@ static vxm_status wrap_crossing(vxm_repair_state *state, vxm_error *error) {
   bool changed = false;
   if (!(state->options.fallback_alpha > 0))
     return VXM_OK;
-  int64_t ununited = state->ununited;
-  state->ununited = 1; /* as good as that */
+  int64_t ununited = state->union_failures;
+  state->union_failures = 1; /* as good as that */
   vxm_status status = vxm_pass_fallback(state, &changed, error);
-  state->ununited = changed ? 0 : ununited;
+  state->union_failures = changed ? 0 : ununited;
   return status == VXM_OK && changed ? run_rounds(state, error) : status;
 }
 
@@ -239,18 +239,18 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
       status = begin_again(state, &before, tries[i].bits, error);
     state->collapses = tries[i].collapses;
     state->doubles_only = tries[i].doubles_only;
-    state->tries = i + 1;
+    state->union_tries = i + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);
     if (status == VXM_OK)
       status = vxm_union_fell_short(&short_of, state, error);
-    short_of = short_of || (i > 0 && state->ununited > 0);
+    short_of = short_of || (i > 0 && state->union_failures > 0);
   }
   if (status == VXM_OK && short_of) { /* then rather what moves nothing */
     status = begin_again(state, &before, tries[0].bits, error);
     state->collapses = tries[0].collapses;
     state->doubles_only = tries[0].doubles_only;
-    state->tries = TRIES + 1;
+    state->union_tries = TRIES + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);
     if (status == VXM_OK)
@@ -311,7 +311,7 @@ static vxm_status look_for_lost(vxm_repair_state *state, const vxm_soup *in, boo
     return VXM_OK;
   vxm_lost_parts lost;
   vxm_status status = vxm_lost_parts_find(&lost, in, state->soup, error);
-  if (status == VXM_OK && lost.count > 0 && !state->guards) {
+  if (status == VXM_OK && lost.count > 0 && !state->guards_lost_parts) {
     state->lost = lost;
     *again = true;
     return VXM_OK;
@@ -323,7 +323,7 @@ static vxm_status look_for_lost(vxm_repair_state *state, const vxm_soup *in, boo
 
 /** Whether bodies that touch may be turned against each other, and are to become a manifold as they are. */
 static bool turns_bodies(const vxm_repair_state *state) {
-  return state->holds && !state->divides && vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) &&
+  return state->has_held_patches && !state->divides && vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) &&
          !(state->options.wrap_alpha > 0);
 }
 

@@ -14,19 +14,19 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_EXACT_WELD] = "exact_weld",
     [VXM_PASS_TOLERANT_WELD] = "tolerant_weld",
     [VXM_PASS_REPEATED_CORNERS] = "repeated_corners",
-    [VXM_PASS_ZERO_AREA] = "zero_area_faces",
+    [VXM_PASS_DEGENERATE_FACES] = "zero_area_faces",
     [VXM_PASS_T_JUNCTIONS] = "t_junctions",
     [VXM_PASS_DUPLICATES] = "duplicate_faces",
     [VXM_PASS_OPPOSITE_DUPLICATES] = "opposite_duplicate_faces",
     [VXM_PASS_INNER_WALLS] = "inner_walls",
     [VXM_PASS_ORIENTATION] = "orientation",
     [VXM_PASS_WRAP] = "wrap",
-    [VXM_PASS_SEPARATION] = "separation",
+    [VXM_PASS_CUT_NONMANIFOLD] = "separation",
     [VXM_PASS_CLOSING] = "closing",
-    [VXM_PASS_SMALL_PARTS] = "small_parts",
+    [VXM_PASS_SMALL_COMPONENTS] = "small_parts",
     [VXM_PASS_SHEETS] = "sheets",
     [VXM_PASS_UNION] = "union",
-    [VXM_PASS_APART] = "apart",
+    [VXM_PASS_PERTURB_COINCIDENT] = "apart",
     [VXM_PASS_UNUSED] = "unused_vertices",
 };
 
@@ -37,7 +37,7 @@ static bool keeps_account(const vxm_repair_options *options) {
 /** Gives the faces of the copy their parts where nothing else does. */
 static vxm_status name_guarded(vxm_repair_state *state, const vxm_soup *in, vxm_error *error) {
   vxm_status status = VXM_OK;
-  if (!state->guards || state->provenance)
+  if (!state->guards_lost_parts || state->provenance)
     return status;
   state->soup->face_parts =
       vxm_repair_state_scratch(state, in->face_count, sizeof *state->soup->face_parts, &status, error);
@@ -61,7 +61,7 @@ static vxm_status repair_copy(vxm_repair_state *state, const vxm_soup *in, bool 
   if (status == VXM_OK && !*again && state->provenance)
     status = vxm_provenance_finish(state->provenance, state->soup, state->options.max_change, error);
   if (status == VXM_OK && !*again && state->options.intersections)
-    status = vxm_provenance_count_crossings(state->provenance, state->soup, state->crossings, error);
+    status = vxm_provenance_count_crossings(state->provenance, state->soup, state->self_intersections, error);
   if (!state->provenance && state->soup->face_parts) { /* they were for the guard alone */
     vxm_free(state->context, state->soup->face_parts);
     state->soup->face_parts = NULL;
@@ -75,21 +75,21 @@ static vxm_status repair_copy(vxm_repair_state *state, const vxm_soup *in, bool 
 }
 
 static void list_passes(vxm_repair_report *report, const vxm_repair_state *state) {
-  report->nonorientable_patches = state->nonorientable;
+  report->nonorientable_patches = state->nonorientable_patches;
   report->open_parts = state->open_parts;
   report->sheets = state->sheets;
-  report->filled_holes = state->filled;
-  report->unfilled_holes = state->unfilled;
-  report->fan_fallbacks = state->fanned;
-  report->union_failures = state->ununited;
-  report->union_tries = state->tries;
-  report->wrapped_parts = state->wrapped;
-  report->self_intersections_before = state->crossings[0];
-  report->self_intersections_after = state->crossings[1];
-  report->unparted_vertices = state->together;
+  report->filled_holes = state->filled_holes;
+  report->unfilled_holes = state->unfilled_holes;
+  report->fan_fallbacks = state->fan_fallbacks;
+  report->union_failures = state->union_failures;
+  report->union_tries = state->union_tries;
+  report->wrapped_parts = state->wrapped_parts;
+  report->self_intersections_before = state->self_intersections[0];
+  report->self_intersections_after = state->self_intersections[1];
+  report->unparted_vertices = state->unparted_vertices;
   report->lost_parts = state->lost_parts;
-  report->emptied_parts = state->emptied;
-  report->shared_faces = state->options.level == VXM_LEVEL_CLEAN ? state->shared : 0;
+  report->emptied_parts = state->emptied_parts;
+  report->shared_faces = state->options.level == VXM_LEVEL_CLEAN ? state->shared_faces : 0;
   for (size_t i = 0; i < state->soup->part_count; i++) {
     const vxm_part_change *part = &state->soup->part_changes[i];
     report->max_displacement = fmax(report->max_displacement, part->max_displacement);
@@ -111,8 +111,11 @@ static vxm_status repair(vxm_repair_state *state, const vxm_soup *in, const vxm_
   vxm_lost_parts lost = {0};
   vxm_status status;
   do {
-    *state = (vxm_repair_state){
-        .context = in->context, .divides = divides, .guards = again, .lost = lost, .crossings = {-1, -1}};
+    *state = (vxm_repair_state){.context = in->context,
+                                .divides = divides,
+                                .guards_lost_parts = again,
+                                .lost = lost,
+                                .self_intersections = {-1, -1}};
     again = false;
     status = vxm_repair_check(&state->options, options, error);
     if (status == VXM_OK)

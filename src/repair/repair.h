@@ -16,17 +16,19 @@
  *  - repeated_corners: faces that lost corners which repeat the one before, or a spike there and back; below
  *    three corners the face goes
  *  - zero_area_faces: faces without area that went; those without which more edges would be odd stay
+ * (repair/clean/degenerate_faces.c)
  *  - t_junctions: edges that were divided at vertices on them, where that closes edges
  * (repair/weld/t_junctions.c)
- *  - duplicate_faces: faces that repeat an earlier one with the same orientation
+ *  - duplicate_faces: faces that repeat an earlier one with the same orientation (repair/clean/duplicates.c)
  *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
  *  - inner_walls: faces of walls within bodies that went, at VXM_LEVEL_CLOSED and above and before voxelizing
  * (repair/bodies/inner_walls.h)
- *  - orientation: faces that were turned (repair/clean/orient.c)
+ *  - orientation: faces that were turned (repair/clean/orientation.c)
  *  - wrap: faces of the surface that was put around everything (repair/exact/wrap.c)
  *  - separation: faces that were detached where a vertex or edge had too many
  * (repair/manifold/cut_nonmanifold_pass.c)
  *  - closing: faces that were added to close holes (repair/holes/closing.c)
+ *  - small_parts: faces of components that were dropped (repair/clean/small_components.c)
  *  - sheets: faces of the plates that open sheets became (repair/sheets/sheets_pass.c)
  *  - union: parts that were united with others, or cut along where they met (repair/exact/union.c)
  *  - apart: vertices that were moved apart from others at the same position

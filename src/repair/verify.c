@@ -35,8 +35,8 @@ static void add(verifying *v, const char *what, int64_t count, int64_t element, 
 /** Passes that only number vertices anew do not count: a file may hold a vertex for every corner. Nor do
  * those that cut apart what a look at edges and vertices has found. */
 static bool is_counted(int pass) {
-  return pass != VXM_PASS_EXACT_WELD && pass != VXM_PASS_UNUSED && pass != VXM_PASS_SEPARATION &&
-         pass != VXM_PASS_APART;
+  return pass != VXM_PASS_EXACT_WELD && pass != VXM_PASS_UNUSED && pass != VXM_PASS_CUT_NONMANIFOLD &&
+         pass != VXM_PASS_PERTURB_COINCIDENT;
 }
 
 /** What another repair would do. */

@@ -9,6 +9,7 @@
 #define VXM_SANDBOX_VOXEL_SINK_H
 
 #include "base/error.h"
+#include "voxmend/grid.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,6 +3,8 @@
  * every voxel in its place with a colour near its own. */
 #include "../voxel/shapes.h"
 
+#include "voxmend.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,6 +3,7 @@
 #include "solids.h"
 
 #include "repair_test.h"
+#include "voxmend/voxelize.h"
 
 static vxm_soup *unite(const vxm_soup *soup, uint64_t **origin, vxm_union_report *report) {
   vxm_soup *out;

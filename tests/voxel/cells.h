@@ -7,6 +7,7 @@
 #include "../mesh/soups.h"
 
 #include "repair/repair.h"
+#include "voxmend/voxelize.h"
 
 #include <math.h>
 

@@ -422,7 +422,7 @@ static uint64_t *flipped(const vxm_snapped_points *placed, const vxm_triangle_se
  * in windows along two axes. */
 static void test_words_get_what_bins_get(void **state) {
   (void)state;
-  const vxm_kernels *builds[4];
+  const vxm_kernels *builds[3];
   size_t count = vxm_kernels_all(builds);
   for (int round = 0; round < 48; round++) {
     vxm_space space = engine_space(9 + 2 * round, 8 + round, 12 + 3 * (round % 24));

@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "grid/bitgrid.h"
 #include "mesh/soup.h"
+#include "voxmend/voxelize.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

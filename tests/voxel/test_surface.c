@@ -3,6 +3,7 @@
 #include "shapes.h"
 
 #include "grid/bitgrid.h"
+#include "voxmend/voxelize.h"
 
 #include <math.h>
 

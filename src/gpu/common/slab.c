@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/common/slab.h"
 
+#include "base/size_text.h"
+
 #include <string.h>
 
 vxm_slab vxm_slab_of(const vxm_window *window, int64_t begin, int64_t slices) {
@@ -10,6 +12,24 @@ vxm_slab vxm_slab_of(const vxm_window *window, int64_t begin, int64_t slices) {
                    .row_words = window->row_words};
   slab.words = slab.row_words * (size_t)window->middle_dim * (size_t)(slab.end - begin);
   return slab;
+}
+
+vxm_status vxm_slab_slices(int64_t *out, const vxm_engine *engine, const vxm_window *window,
+                           int64_t slice_most, int64_t most, vxm_error *error) {
+  int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
+  if (slice > slice_most)
+    return vxm_fail(error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
+                    vxm_size_text_of((uint64_t)slice).text, engine->info.renderer,
+                    vxm_size_text_of((uint64_t)slice_most).text);
+  *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
+  return VXM_OK;
+}
+
+int64_t vxm_slab_share(vxm_context *context, size_t held, int buffers) {
+  size_t left = vxm_memory_left(context);
+  if (left > INT64_MAX / 2) /* there is no limit */
+    return INT64_MAX;
+  return (int64_t)((left + held) / (size_t)buffers);
 }
 
 size_t vxm_slab_slice_words(const vxm_slab *slab) {

@@ -3,6 +3,7 @@
 #ifndef VXM_GPU_COMMON_SLAB_H
 #define VXM_GPU_COMMON_SLAB_H
 
+#include "voxel/engine/engine.h"
 #include "voxel/parity/parity_union.h"
 #include "voxel/surface/surface.h"
 
@@ -15,6 +16,13 @@ typedef struct vxm_slab {
 } vxm_slab;
 
 vxm_slab vxm_slab_of(const vxm_window *window, int64_t begin, int64_t slices);
+/** How many slices of a window fit `most` bytes, one at least. @return VXM_OK; VXM_ERROR_RANGE if one takes
+ * more than slice_most */
+vxm_status vxm_slab_slices(int64_t *out, const vxm_engine *engine, const vxm_window *window,
+                           int64_t slice_most, int64_t most, vxm_error *error);
+/** Bytes that a slab may take under the memory limit, with so many buffers of its size which hold `held`
+ * bytes already. */
+int64_t vxm_slab_share(vxm_context *context, size_t held, int buffers);
 /** Words of a slice. */
 size_t vxm_slab_slice_words(const vxm_slab *slab);
 /** Bytes before it in words that hold its window without room between slices. */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Buffers of the device, and slabs on their way to and from it. */
-#include "base/size_text.h"
 #include "gpu/opencl/opencl.h"
 
 #include <string.h>
@@ -92,7 +91,6 @@ vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offse
 
 /* ---- Slabs ---- */
 
-/** What a slab may take under the memory limit: of what is left, and what its buffers have already. */
 static int64_t slab_share(const vxm_opencl *engine) {
   enum {
     BUFFERS = 11 /**< flips, two results and four voters; and as much for lists of tiles and what is added */
@@ -100,12 +98,10 @@ static int64_t slab_share(const vxm_opencl *engine) {
   static const vxm_cl_buffer_id own[] = {VXM_CL_FLIPS,      VXM_CL_RESULT,      VXM_CL_RESULT2,
                                          VXM_CL_VOTER_X,    VXM_CL_VOTER_X + 1, VXM_CL_VOTER_X + 2,
                                          VXM_CL_VOTER_X + 3};
-  size_t left = vxm_memory_left(engine->base.context);
-  if (left > INT64_MAX / 2) /* there is no limit */
-    return INT64_MAX;
+  size_t held = 0;
   for (size_t i = 0; i < sizeof own / sizeof *own; i++)
-    left += engine->buffers[own[i]].bytes;
-  return (int64_t)(left / BUFFERS);
+    held += engine->buffers[own[i]].bytes;
+  return vxm_slab_share(engine->base.context, held, BUFFERS);
 }
 
 vxm_status vxm_cl_slab_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
@@ -113,15 +109,9 @@ vxm_status vxm_cl_slab_slices(int64_t *out, const vxm_opencl *engine, const vxm_
   /* Bits of a slab are counted in 32 bits; flips, two results and four voters may be held. */
   const int64_t bytes_most = INT64_C(256) << 20, buffers = 8;
   const vxm_engine_info *info = &engine->base.info;
-  int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
-  int64_t most = vxm_min(vxm_min(info->block_bytes, info->global_bytes / buffers), bytes_most);
-  most = vxm_min(most, slab_share(engine));
-  if (slice > bytes_most || slice > info->block_bytes)
-    return vxm_fail(error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
-                    vxm_size_text_of((uint64_t)slice).text, info->renderer,
-                    vxm_size_text_of((uint64_t)vxm_min(info->block_bytes, bytes_most)).text);
-  *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
-  return VXM_OK;
+  const int64_t slab_most = vxm_min(vxm_min(info->block_bytes, info->global_bytes / buffers), bytes_most);
+  return vxm_slab_slices(out, &engine->base, window, vxm_min(info->block_bytes, bytes_most),
+                         vxm_min(slab_most, slab_share(engine)), error);
 }
 
 vxm_status vxm_cl_slab_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm_slab *slab,

@@ -3,6 +3,7 @@
 #ifndef VXM_GPU_OPENCL_CL_SOLID_H
 #define VXM_GPU_OPENCL_CL_SOLID_H
 
+#include "gpu/common/slab_solid.h"
 #include "gpu/opencl/opencl.h"
 
 vxm_status vxm_cl_move(vxm_engine *engine, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,
@@ -39,15 +40,9 @@ vxm_status vxm_cl_slab_bring(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_bu
 
 /** In VXM_CL_TOUCHED: a part that sets no voxel, and is not looked at. */
 #define VXM_CL_NOT_ASKED UINT32_MAX
-/** Reads which parts set a voxel: those that have 1. */
-vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels,
-                               const vxm_triangle_set *triangles, vxm_error *error);
-
-/** Makes the words of a slab in a buffer. */
-typedef vxm_status (*vxm_cl_slab_fn)(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id into,
-                                     void *payload, vxm_error *error);
-/** Makes a window slab by slab, and takes each back while the next is made; `is_or`: adds to the window. */
-vxm_status vxm_cl_each_slab(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_slab_fn make,
+extern const vxm_slab_solid vxm_cl_slab_solid;
+/** See vxm_slab_solid. */
+vxm_status vxm_cl_each_slab(vxm_engine *engine, const vxm_window *window, bool is_or, vxm_slab_fn make,
                             void *payload, vxm_error *error);
 
 /** Parity of the job's parts along its axis, united, in a buffer of a slab, triangle by triangle

@@ -231,7 +231,8 @@ static vxm_status make(vxm_sparse **out, making *m, const vxm_space *space, vxm_
   if (status == VXM_OK)
     status = vxm_cl_tree_take(out, engine, &m->tree, m->bricks, m->inside, m->job->placed->context, error);
   if (status == VXM_OK)
-    status = vxm_cl_touched_take(engine, m->job->has_voxels, m->job->triangles, error);
+    status = vxm_slab_solid_touched(&vxm_cl_slab_solid, &engine->base, m->job->has_voxels,
+                                    m->job->triangles->split.part_count, error);
   if (status == VXM_OK && engine->stages) {
     engine->stages->cells_active = m->tree.level[0].count;
     engine->stages->nodes = m->tree.node_count;

@@ -10,12 +10,13 @@ typedef struct surface_job {
   bool is_fresh;
 } surface_job;
 
-static vxm_status set_tile(vxm_opencl *engine, const vxm_slab *slab, vxm_cl_buffer_id into, void *payload,
-                           vxm_error *error) {
+static vxm_status set_slab(vxm_engine *base, const vxm_slab *slab, int to, void *payload, vxm_error *error) {
+  vxm_opencl *engine = vxm_opencl_of(base);
+  const vxm_cl_buffer_id into = (vxm_cl_buffer_id)to;
   const surface_job *s = payload;
   vxm_slab_surface job = vxm_slab_surface_of(slab, s->surface, s->kind);
   job.few_columns = FEW_COLUMNS;
-  vxm_status status = engine->base.keeps && !s->is_fresh
+  vxm_status status = base->keeps && !s->is_fresh
                           ? vxm_cl_slab_bring(engine, slab, into, error)
                           : vxm_cl_clear(engine, into, slab->words * sizeof(uint64_t), error);
   if (status == VXM_OK)
@@ -43,7 +44,7 @@ vxm_status vxm_cl_surface(vxm_engine *base, const vxm_surface *surface, const vx
     return vxm_fail_to_keep(base, error);
   if (status == VXM_OK)
     status =
-        vxm_cl_each_slab(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind, is_fresh}, error);
+        vxm_cl_each_slab(base, window, !is_fresh, set_slab, &(surface_job){surface, kind, is_fresh}, error);
   return status == VXM_OK && !base->keeps ? vxm_oversized_surface_add(&engine->device_cache.oversized_surface,
                                                                       surface, window, kind, error)
                                           : status;

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "base/size_text.h"
 #include "gpu/opengl/opengl.h"
 
 #include <string.h>
@@ -8,32 +7,23 @@
 static const int64_t slab_bytes_most = INT64_C(64) << 20;
 static const int64_t slice_bytes_most = INT64_C(256) << 20;
 
-/** What a slab may take under the memory limit: of what is left, and what its buffers have already. */
 static int64_t slab_share(const vxm_opengl *engine) {
   enum { BUFFERS = 9 /**< flips, result, four voters, two staging buffers; and one spare */ };
   static const vxm_gl_buffer_id own[] = {VXM_GL_FLIPS,       VXM_GL_RESULT,      VXM_GL_VOTER_X,
                                          VXM_GL_VOTER_X + 1, VXM_GL_VOTER_X + 2, VXM_GL_VOTER_X + 3,
                                          VXM_GL_STAGING,     VXM_GL_STAGING2};
-  size_t left = vxm_memory_left(engine->base.context);
-  if (left > INT64_MAX / 2) /* there is no limit */
-    return INT64_MAX;
+  size_t held = 0;
   for (size_t i = 0; i < sizeof own / sizeof *own; i++)
-    left += engine->buffers[own[i]].bytes;
-  return (int64_t)(left / BUFFERS);
+    held += engine->buffers[own[i]].bytes;
+  return vxm_slab_share(engine->base.context, held, BUFFERS);
 }
 
 vxm_status vxm_gl_slab_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
                               vxm_error *error) {
-  int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
-  int64_t most = vxm_min(vxm_min(engine->base.info.block_bytes, slab_bytes_most), slab_share(engine));
+  const int64_t block = engine->base.info.block_bytes;
   /* Not all that a block may take; and shaders count the bits of a slab in 32 bits. */
-  if (slice > engine->base.info.block_bytes / 2 || slice > slice_bytes_most)
-    return vxm_fail(
-        error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
-        vxm_size_text_of((uint64_t)slice).text, engine->base.info.renderer,
-        vxm_size_text_of((uint64_t)vxm_min(engine->base.info.block_bytes / 2, slice_bytes_most)).text);
-  *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
-  return VXM_OK;
+  return vxm_slab_slices(out, &engine->base, window, vxm_min(block / 2, slice_bytes_most),
+                         vxm_min(vxm_min(block, slab_bytes_most), slab_share(engine)), error);
 }
 
 vxm_status vxm_gl_slab_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_slab *slab,

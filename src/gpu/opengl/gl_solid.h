@@ -3,6 +3,7 @@
 #ifndef VXM_GPU_OPENGL_GL_SOLID_H
 #define VXM_GPU_OPENGL_GL_SOLID_H
 
+#include "gpu/common/slab_solid.h"
 #include "gpu/opengl/opengl.h"
 
 vxm_status vxm_gl_move(vxm_engine *engine, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,
@@ -30,11 +31,8 @@ vxm_status vxm_gl_slab_stay(vxm_opengl *engine, const vxm_slab *slab, vxm_error 
 /** The other way. */
 vxm_status vxm_gl_slab_bring(vxm_opengl *engine, const vxm_slab *slab, vxm_error *error);
 
-/** Makes the words of a slab in VXM_GL_RESULT. */
-typedef vxm_status (*vxm_gl_slab_fn)(vxm_opengl *engine, const vxm_slab *slab, void *payload,
-                                     vxm_error *error);
-/** Makes a window slab by slab, and takes each back while the next is made; `is_or`: adds to the window. */
-vxm_status vxm_gl_each_slab(vxm_opengl *engine, const vxm_window *window, bool is_or, vxm_gl_slab_fn make,
+/** See vxm_slab_solid. */
+vxm_status vxm_gl_each_slab(vxm_engine *engine, const vxm_window *window, bool is_or, vxm_slab_fn make,
                             void *payload, vxm_error *error);
 
 #endif

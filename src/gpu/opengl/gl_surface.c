@@ -79,17 +79,19 @@ typedef struct drawing {
   bool is_fresh;
 } drawing;
 
-static vxm_status draw_slab(vxm_opengl *engine, const vxm_slab *slab, void *payload, vxm_error *error) {
+static vxm_status draw_slab(vxm_engine *base, const vxm_slab *slab, int into, void *payload,
+                            vxm_error *error) {
+  vxm_opengl *engine = vxm_opengl_of(base);
   const drawing *d = payload;
   const vxm_gl *gl = &engine->context.gl;
   surface_job job = job_of(engine, d->surface, slab, d->kind);
-  vxm_status status = vxm_gl_reserve(engine, VXM_GL_RESULT, slab->words * sizeof(uint64_t), error);
+  vxm_status status = vxm_gl_reserve(engine, (vxm_gl_buffer_id)into, slab->words * sizeof(uint64_t), error);
   if (status != VXM_OK)
     return status;
-  if (engine->base.keeps && !d->is_fresh)
+  if (base->keeps && !d->is_fresh)
     status = vxm_gl_slab_bring(engine, slab, error);
   else {
-    gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_RESULT].name);
+    gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[into].name);
     gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
   }
   if (status == VXM_OK)
@@ -115,7 +117,7 @@ vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vx
   bool needs_host = base->keeps && engine->device_cache.oversized_surface.count > 0;
   drawing d = {surface, kind, is_fresh};
   if (status == VXM_OK && !needs_host)
-    status = vxm_gl_each_slab(engine, window, !is_fresh, draw_slab, &d, error);
+    status = vxm_gl_each_slab(base, window, !is_fresh, draw_slab, &d, error);
   vxm_gl_leave(&engine->context);
   if (status == VXM_OK && needs_host)
     return vxm_fail_to_keep(base, error);

@@ -7,6 +7,7 @@
 #include "gridio/common/grid_writer.h"
 #include "gridio/common/scalar_type.h"
 #include "gridio/common/sidecar.h"
+#include "voxmend/sparse.h"
 
 /** A file in the making; what its format needs lies in `state`. */
 struct vxm_grid_writer {

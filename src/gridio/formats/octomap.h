@@ -12,6 +12,7 @@
 #include "base/module.h"
 #include "base/output.h"
 #include "sandbox/reader.h"
+#include "voxmend/sparse.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -4,6 +4,7 @@
 #define VXM_GRIDIO_FORMATS_OCTOMAP_READ_H
 
 #include "gridio/common/values.h"
+#include "voxmend/sparse.h"
 
 /** What the JSON beside a file calls it. */
 #define VXM_OCTOMAP_JSON "voxmend octomap"

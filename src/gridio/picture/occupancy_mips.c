@@ -13,13 +13,9 @@ typedef struct filling {
   int level;
 } filling;
 
-static int64_t smaller(int64_t a, int64_t b) {
-  return a < b ? a : b;
-}
-
 /** Takes the voxels of four rows, the first of which is j, into the blocks that they belong to. */
 static void gather(uint64_t *blocks, const vxm_grid *grid, int64_t j, int64_t k, int64_t count) {
-  for (int64_t y = j; y < smaller(j + 4, grid->space.dims[1]); y++) {
+  for (int64_t y = j; y < vxm_min(j + 4, grid->space.dims[1]); y++) {
     const uint64_t *row = vxm_grid_row(grid, y, k);
     int shift = (int)(16 * (k & 3) + 4 * (y & 3));
     for (int64_t b = 0; b < count; b++)
@@ -37,7 +33,7 @@ static void fill_first(size_t task, int worker, void *payload) {
     uint64_t *blocks = f->mips->blocks + first;
     uint8_t *cells = f->mips->level[0].cells + first;
     memset(blocks, 0, (size_t)dims[0] * sizeof *blocks);
-    for (int64_t k = 4 * bk; k < smaller(4 * bk + 4, f->grid->space.dims[2]); k++)
+    for (int64_t k = 4 * bk; k < vxm_min(4 * bk + 4, f->grid->space.dims[2]); k++)
       gather(blocks, f->grid, 4 * bj, k, dims[0]);
     for (int64_t b = 0; b < dims[0]; b++)
       cells[b] = (uint8_t)((__builtin_popcountll(blocks[b]) * 255 + 63) / 64);
@@ -55,9 +51,9 @@ static void fill_next(size_t task, int worker, void *payload) {
   for (int64_t j = 0; j < dims[1]; j++)
     for (int64_t i = 0; i < dims[0]; i++) {
       unsigned sum = 0;
-      for (int64_t z = 2 * k; z < smaller(2 * k + 2, fine[2]); z++)
-        for (int64_t y = 2 * j; y < smaller(2 * j + 2, fine[1]); y++)
-          for (int64_t x = 2 * i; x < smaller(2 * i + 2, fine[0]); x++)
+      for (int64_t z = 2 * k; z < vxm_min(2 * k + 2, fine[2]); z++)
+        for (int64_t y = 2 * j; y < vxm_min(2 * j + 2, fine[1]); y++)
+          for (int64_t x = 2 * i; x < vxm_min(2 * i + 2, fine[0]); x++)
             sum += from[(z * fine[1] + y) * fine[0] + x];
       /* Rounded up, so that 0 stays the mark of an empty cell. */
       f->mips->level[f->level].cells[(k * dims[1] + j) * dims[0] + i] = (uint8_t)((sum + 7) / 8);

@@ -8,16 +8,6 @@
 
 #include <inttypes.h>
 
-static size_t largest_face(const vxm_soup *soup) {
-  size_t largest = 0;
-  for (size_t f = 0; f < soup->face_count; f++) {
-    size_t corners = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
-    if (corners > largest)
-      largest = corners;
-  }
-  return largest;
-}
-
 static void write_header(const vxm_soup *soup, vxm_output *output, unsigned flags, bool long_lists) {
   vxm_output_printf(output, "ply\nformat %s 1.0\ncomment voxmend\nelement vertex %zu\n",
                     flags & VXM_WRITE_ASCII ? "ascii" : "binary_little_endian", soup->vertex_count);
@@ -88,7 +78,7 @@ static vxm_status write_binary(vxm_faces_out *faces, vxm_output *output, bool lo
 }
 
 vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error) {
-  size_t largest = flags & VXM_WRITE_POLYGONS ? largest_face(soup) : 3;
+  size_t largest = flags & VXM_WRITE_POLYGONS ? vxm_largest_face(soup) : 3;
   if (largest > UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "a face has %zu corners, more than PLY can hold", largest);
   bool long_lists = largest > UINT8_MAX;

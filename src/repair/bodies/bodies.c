@@ -1,36 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/bodies.h"
 
+#include "repair/bodies/body_faces.h"
 #include "repair/bodies/hanging_sheets.h"
 #include "repair/bodies/layers.h"
 
 #include <stdlib.h>
-
-/** A face of the result. */
-typedef struct piece {
-  uint64_t key; /**< of the body it belongs to; 0 = it is of none and stays as it is */
-  size_t face;  /**< which it is a copy of */
-  bool reversed;
-} piece;
-
-/** A vertex where a group is open. */
-typedef struct rim_vertex {
-  size_t group;
-  uint32_t vertex;
-} rim_vertex;
 
 typedef struct parting {
   vxm_repair_state *state;
   const vxm_soup *soup;
   vxm_copies *copies;
   vxm_edge_groups groups;
-  rim_vertex *rims; /**< sorted */
-  size_t rim_count;
+  vxm_group_rims rims;
   uint8_t *asked;  /**< per group: it is to be divided into layers */
   uint8_t *failed; /**< per group: it was asked and could not be */
   vxm_layers layers;
-  piece *pieces;
-  size_t piece_count, piece_capacity;
+  vxm_body_faces result;
   vxm_error error;
 } parting;
 
@@ -51,40 +37,6 @@ static bool goes_on(parting *p, size_t step) {
 
 /* ---- Which groups ---- */
 
-static int by_vertex_then_group(const void *a, const void *b) {
-  const rim_vertex *s = a, *t = b;
-  if (s->vertex != t->vertex)
-    return s->vertex < t->vertex ? -1 : 1;
-  return s->group < t->group ? -1 : s->group > t->group;
-}
-
-static bool find_rims(parting *p) {
-  const vxm_soup *soup = p->soup;
-  const vxm_edge *edges = p->state->edges.edges;
-  size_t count = 0;
-  for (size_t c = 0; c < soup->corner_count; c++)
-    count += p->groups.sides[c] != VXM_NO_EDGE && vxm_edge_is_odd(&edges[p->groups.sides[c]]);
-  p->rims = scratch(p, 2 * count, sizeof *p->rims);
-  if (!p->rims)
-    return false;
-  for (size_t f = 0; count > 0 && f < soup->face_count; f++)
-    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
-      size_t edge = p->groups.sides[c];
-      if (edge == VXM_NO_EDGE || !vxm_edge_is_odd(&edges[edge]))
-        continue;
-      p->rims[p->rim_count++] = (rim_vertex){p->groups.of_face[f], edges[edge].a};
-      p->rims[p->rim_count++] = (rim_vertex){p->groups.of_face[f], edges[edge].b};
-    }
-  qsort(p->rims, p->rim_count, sizeof *p->rims, by_vertex_then_group);
-  return true;
-}
-
-static bool is_open_at(const parting *p, size_t group, uint32_t vertex) {
-  rim_vertex wanted = {group, vertex};
-  return !p->groups.groups[group].closed &&
-         bsearch(&wanted, p->rims, p->rim_count, sizeof *p->rims, by_vertex_then_group);
-}
-
 /** Groups that are closed round a vertex which is in others, too. Where they are open it may be one surface
  * with a slit, so there they stay together. */
 static bool mark_touching(parting *p, uint8_t *touches) {
@@ -99,8 +51,8 @@ static bool mark_touching(parting *p, uint8_t *touches) {
       if (*at == 0)
         *at = group + 1;
       else if (*at != group + 1) {
-        touches[group] |= !is_open_at(p, group, vertex);
-        touches[*at - 1] |= !is_open_at(p, *at - 1, vertex);
+        touches[group] |= !vxm_group_is_open_at(&p->rims, group, vertex);
+        touches[*at - 1] |= !vxm_group_is_open_at(&p->rims, *at - 1, vertex);
       }
     }
   }
@@ -110,22 +62,14 @@ static bool mark_touching(parting *p, uint8_t *touches) {
 
 /* ---- Layers ---- */
 
-static bool put(parting *p, uint64_t key, size_t face, bool reversed) {
-  if (p->piece_count == p->piece_capacity) {
-    void *block = p->pieces;
-    vxm_status status = vxm_grow(p->state->context, &block, &p->piece_capacity, p->piece_count + 1,
-                                 sizeof *p->pieces, &p->error);
-    if (status != VXM_OK)
-      return fail(p, status);
-    p->pieces = block;
-  }
-  p->pieces[p->piece_count++] = (piece){key, face, reversed};
-  return true;
+static bool put(parting *p, uint64_t body, size_t face, bool reversed) {
+  return vxm_body_faces_add(&p->result, p->state->context, (vxm_body_face){body, face, reversed},
+                            &p->error) == VXM_OK;
 }
 
 /** Layer k > 0 bounds what the faces wind round at least k times, layer k < 0 what they wind round -k times
  * or more the other way, with the faces turned. */
-static uint64_t key_of(size_t group, int64_t layer) {
+static uint64_t body_of(size_t group, int64_t layer) {
   return ((uint64_t)group + 1) << 32 | (uint64_t)(layer + INT32_MAX);
 }
 
@@ -135,16 +79,16 @@ static bool put_layers(parting *p, size_t face) {
   int64_t behind = front + vxm_layers_surplus(&p->layers, face);
   bool done = true;
   for (int64_t k = front + 1; k <= behind && done; k++)
-    done = put(p, key_of(group, k > 0 ? k : k - 1), face, k <= 0);
+    done = put(p, body_of(group, k > 0 ? k : k - 1), face, k <= 0);
   return done;
 }
 
-static bool put_pieces(parting *p, const uint8_t *touches) {
+static bool put_faces(parting *p, const uint8_t *touches) {
   bool done = true;
   for (size_t f = 0; f < p->soup->face_count && done; f++) {
     size_t group = p->groups.of_face[f];
     if (!p->asked[group] || p->failed[group])
-      done = put(p, touches[group] ? key_of(group, 0) : 0, f, false);
+      done = put(p, touches[group] ? body_of(group, 0) : 0, f, false);
     else if (vxm_layers_surplus(&p->layers, f) == 0)
       done = p->copies[f].first != f || vxm_layers_hides(&p->layers, f) ||
              put(p, 0, f, false); /* a sheet, of which one side is enough */
@@ -157,15 +101,15 @@ static bool put_pieces(parting *p, const uint8_t *touches) {
 
 typedef struct side {
   size_t group, edge;
-  uint64_t key;
+  uint64_t body;
   int turn;
 } side;
 
-static int by_edge_then_key(const void *a, const void *b) {
+static int by_edge_then_body(const void *a, const void *b) {
   const side *s = a, *t = b;
   if (s->edge != t->edge)
     return s->edge < t->edge ? -1 : 1;
-  return s->key < t->key ? -1 : s->key > t->key;
+  return s->body < t->body ? -1 : s->body > t->body;
 }
 
 /** A layer that is not closed for itself is none: faces cut through each other elsewhere than at their edges.
@@ -173,189 +117,32 @@ static int by_edge_then_key(const void *a, const void *b) {
 static bool check_layers(parting *p) {
   const vxm_soup *soup = p->soup;
   size_t count = 0;
-  for (size_t i = 0; i < p->piece_count; i++)
-    count += (size_t)(soup->offsets[p->pieces[i].face + 1] - soup->offsets[p->pieces[i].face]);
+  for (size_t i = 0; i < p->result.count; i++)
+    count += (size_t)(soup->offsets[p->result.faces[i].face + 1] - soup->offsets[p->result.faces[i].face]);
   side *sides = scratch(p, count, sizeof *sides);
   if (!sides)
     return false;
   count = 0;
-  for (size_t i = 0; i < p->piece_count; i++) {
-    const piece *q = &p->pieces[i];
+  for (size_t i = 0; i < p->result.count; i++) {
+    const vxm_body_face *q = &p->result.faces[i];
     size_t group = p->groups.of_face[q->face];
     for (uint64_t c = soup->offsets[q->face];
-         c < soup->offsets[q->face + 1] && q->key != 0 && p->asked[group] && !p->failed[group]; c++) {
+         c < soup->offsets[q->face + 1] && q->body != 0 && p->asked[group] && !p->failed[group]; c++) {
       size_t edge = p->groups.sides[c];
       bool forward = edge != VXM_NO_EDGE && soup->indices[c] == p->state->edges.edges[edge].a;
       if (edge != VXM_NO_EDGE && p->state->edges.edges[edge].count > 2)
-        sides[count++] = (side){group, edge, q->key, forward != q->reversed ? 1 : -1};
+        sides[count++] = (side){group, edge, q->body, forward != q->reversed ? 1 : -1};
     }
   }
-  qsort(sides, count, sizeof *sides, by_edge_then_key);
+  qsort(sides, count, sizeof *sides, by_edge_then_body);
   for (size_t i = 0, j; i < count; i = j) {
     int sum = 0;
-    for (j = i; j < count && by_edge_then_key(&sides[i], &sides[j]) == 0; j++)
+    for (j = i; j < count && by_edge_then_body(&sides[i], &sides[j]) == 0; j++)
       sum += sides[j].turn;
     p->failed[sides[i].group] |= sum != 0;
   }
   vxm_free(p->state->context, sides);
   return true;
-}
-
-/* ---- The result ---- */
-
-typedef struct claim {
-  uint64_t key;
-  uint32_t vertex, number;
-} claim;
-
-static int by_vertex_then_key(const void *a, const void *b) {
-  const claim *s = a, *t = b;
-  if (s->vertex != t->vertex)
-    return s->vertex < t->vertex ? -1 : 1;
-  return s->key < t->key ? -1 : s->key > t->key;
-}
-
-/** The body that has the vertex of a piece. */
-static uint64_t key_at(const parting *p, const piece *q, uint32_t vertex) {
-  return q->key != 0 && is_open_at(p, p->groups.of_face[q->face], vertex) ? 0 : q->key;
-}
-
-/** The body of the lowest key keeps a vertex. */
-static bool find_keepers(parting *p, uint64_t *keeper) {
-  for (size_t v = 0; v < p->soup->vertex_count; v++)
-    keeper[v] = UINT64_MAX;
-  for (size_t i = 0; i < p->piece_count && goes_on(p, i); i++) {
-    const piece *q = &p->pieces[i];
-    for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++) {
-      uint64_t key = key_at(p, q, p->soup->indices[c]), *least = &keeper[p->soup->indices[c]];
-      *least = key < *least ? key : *least;
-    }
-  }
-  return p->error.code == VXM_OK;
-}
-
-/** Lists which other bodies have which vertices; without a list only counts their corners. */
-static size_t list_claims(const parting *p, const uint64_t *keeper, claim *claims) {
-  size_t count = 0;
-  for (size_t i = 0; i < p->piece_count; i++) {
-    const piece *q = &p->pieces[i];
-    for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++) {
-      uint32_t vertex = p->soup->indices[c];
-      uint64_t key = key_at(p, q, vertex);
-      if (key != keeper[vertex] && claims)
-        claims[count] = (claim){key, vertex, 0};
-      count += key != keeper[vertex];
-    }
-  }
-  return count;
-}
-
-/** Sorts them, each once. */
-static size_t sort_claims(claim *claims, size_t count) {
-  size_t distinct = 0;
-  qsort(claims, count, sizeof *claims, by_vertex_then_key);
-  for (size_t i = 0; i < count; i++)
-    if (i == 0 || by_vertex_then_key(&claims[i], &claims[distinct - 1]) != 0)
-      claims[distinct++] = claims[i];
-  return distinct;
-}
-
-static vxm_status add_vertices(vxm_soup *out, claim *claims, size_t count, const vxm_soup *soup,
-                               vxm_error *error) {
-  vxm_status status = VXM_OK;
-  for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
-    const double *x = vxm_position(soup, v);
-    status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
-    if (status == VXM_OK)
-      status = vxm_check_cancelled_at(v, soup->context, error);
-  }
-  for (size_t i = 0; i < count && status == VXM_OK; i++) {
-    const double *x = vxm_position(soup, claims[i].vertex);
-    claims[i].number = (uint32_t)out->vertex_count;
-    status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
-  }
-  return status;
-}
-
-/** What a body has in the place of a vertex. */
-static uint32_t vertex_of(uint64_t key, uint32_t vertex, const uint64_t *keeper, const claim *claims,
-                          size_t count) {
-  const claim wanted = {key, vertex, 0};
-  if (key == keeper[vertex])
-    return vertex;
-  const claim *found = bsearch(&wanted, claims, count, sizeof *claims, by_vertex_then_key);
-  return found->number;
-}
-
-static size_t largest_face(const vxm_soup *soup) {
-  size_t largest = 0;
-  for (size_t f = 0; f < soup->face_count; f++)
-    largest = soup->offsets[f + 1] - soup->offsets[f] > largest
-                  ? (size_t)(soup->offsets[f + 1] - soup->offsets[f])
-                  : largest;
-  return largest;
-}
-
-/** Adds the pieces; `corners` is scratch per corner of the largest face. */
-static vxm_status add_pieces(parting *p, vxm_soup *out, const uint64_t *keeper, const claim *claims,
-                             size_t count, uint32_t *corners) {
-  vxm_status status = VXM_OK;
-  for (size_t i = 0; i < p->piece_count && status == VXM_OK; i++) {
-    const piece *q = &p->pieces[i];
-    size_t size;
-    const uint32_t *corner = vxm_face(p->soup, q->face, &size);
-    for (size_t c = 0; c < size; c++) {
-      uint32_t vertex = corner[q->reversed ? size - 1 - c : c];
-      corners[c] = vertex_of(key_at(p, q, vertex), vertex, keeper, claims, count);
-    }
-    status = vxm_soup_add_face(out, corners, size, &p->error);
-    if (status == VXM_OK && !goes_on(p, i))
-      status = p->error.code;
-  }
-  return status;
-}
-
-/** Makes a soup of the pieces; `keeper` is scratch per vertex. */
-static vxm_status make_soup(parting *p, vxm_soup *out, uint64_t *keeper) {
-  if (!find_keepers(p, keeper))
-    return p->error.code;
-  size_t count = list_claims(p, keeper, NULL);
-  claim *claims = scratch(p, count, sizeof *claims);
-  uint32_t *corners = claims ? scratch(p, largest_face(p->soup), sizeof *corners) : NULL;
-  vxm_status status = corners ? VXM_OK : p->error.code;
-  if (status == VXM_OK) {
-    list_claims(p, keeper, claims);
-    count = sort_claims(claims, count);
-    status = add_vertices(out, claims, count, p->soup, &p->error);
-  }
-  if (status == VXM_OK)
-    status = add_pieces(p, out, keeper, claims, count, corners);
-  vxm_free(p->state->context, corners);
-  vxm_free(p->state->context, claims);
-  return status;
-}
-
-/** Puts the pieces in the place of the faces; *added: vertices that there are more. */
-static vxm_status build(parting *p, int64_t *added) {
-  vxm_repair_state *state = p->state;
-  vxm_soup *out = NULL;
-  vxm_status status = vxm_soup_create(&out, state->context, "", &p->error);
-  uint64_t *keeper = status == VXM_OK ? scratch(p, p->soup->vertex_count, sizeof *keeper) : NULL;
-  uint64_t *origin = keeper ? scratch(p, p->piece_count, sizeof *origin) : NULL;
-  status = origin ? make_soup(p, out, keeper) : p->error.code;
-  vxm_free(state->context, keeper);
-  if (status != VXM_OK) {
-    vxm_free(state->context, origin);
-    vxm_soup_destroy(out);
-    return status;
-  }
-  for (size_t i = 0; i < p->piece_count; i++) {
-    origin[i] = p->pieces[i].face;
-    if (p->pieces[i].reversed && state->turned)
-      state->turned[origin[i]] ^= VXM_TURNED;
-  }
-  *added = (int64_t)(out->vertex_count - p->soup->vertex_count);
-  return vxm_repair_state_adopt(state, out, origin, &p->error);
 }
 
 /* ---- The pass ---- */
@@ -430,17 +217,17 @@ static bool divide(parting *p, const uint8_t *touches, bool mixed, bool *changed
     return false;
   if (!any)
     return true;
-  if (!put_pieces(p, touches) || !check_layers(p))
+  if (!put_faces(p, touches) || !check_layers(p))
     return false;
-  p->piece_count = 0;
-  if (!put_pieces(p, touches)) /* once more, without what is none */
+  p->result.count = 0;
+  if (!put_faces(p, touches)) /* once more, without what is none */
     return false;
-  state->shared = count_shared(p);
+  state->shared_faces = count_shared(p);
   int64_t added = 0;
-  vxm_status status = build(p, &added);
+  vxm_status status = vxm_body_faces_build(&p->result, state, &p->rims, &added, &p->error);
   if (status != VXM_OK)
     return fail(p, status);
-  state->counts[VXM_PASS_SEPARATION] += added;
+  state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
   *changed = true;
   return true;
 }
@@ -450,7 +237,8 @@ static bool find_groups(parting *p, bool *any, uint8_t **touches) {
     return false;
   *touches = scratch(p, p->groups.count, sizeof **touches);
   p->asked = *touches ? scratch(p, p->groups.count, sizeof *p->asked) : NULL;
-  if (!p->asked || !find_rims(p) || !mark_touching(p, *touches))
+  if (!p->asked || vxm_group_rims_find(&p->rims, &p->groups, p->state, &p->error) != VXM_OK ||
+      !mark_touching(p, *touches))
     return false;
   for (size_t g = 0; g < p->groups.count; g++) {
     const vxm_edge_group *group = &p->groups.groups[g];
@@ -489,7 +277,7 @@ static bool cut_sheets(parting *p, bool *changed) {
   int64_t added = 0;
   if (!state->has_patches && vxm_cut_hanging_sheets(state, &added, &p->error) != VXM_OK)
     return false;
-  state->counts[VXM_PASS_SEPARATION] += added;
+  state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
   *changed = added > 0;
   return true;
 }
@@ -512,8 +300,8 @@ static vxm_status part(vxm_repair_state *state, bool mixed, bool *changed, vxm_e
     touches[g] = 0;
   if (done && any)
     done = divide(&p, touches, mixed, changed);
-  vxm_free(state->context, p.pieces);
-  vxm_free(state->context, p.rims);
+  vxm_free(state->context, p.result.faces);
+  vxm_group_rims_destroy(&p.rims, state->context);
   vxm_free(state->context, p.failed);
   vxm_free(state->context, p.layers.known);
   vxm_free(state->context, p.layers.front);

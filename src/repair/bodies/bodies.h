@@ -21,8 +21,8 @@
  * back to back and so bound nothing are left as a sheet with one side, but for those within the solid.
  *
  * A group where faces cut through each other between their edges may have no layers of whole faces; then it
- * stays as it is. Counted as separation: vertices that there are more. state->shared becomes the number of
- * repeated faces that are left.
+ * stays as it is. Counted as separation: vertices that there are more. state->shared_faces becomes the number
+ * of repeated faces that are left.
  */
 vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *error);
 

@@ -67,7 +67,7 @@ static bool join_faces(cutting *c, bool sheets) {
       if (*other == 0)
         *other = f + 1;
       else
-        c->patch[vxm_set_of(c->patch, f)] = vxm_set_of(c->patch, *other - 1);
+        vxm_set_unite(c->patch, f, *other - 1);
     }
   return c->error.code == VXM_OK;
 }

@@ -92,7 +92,7 @@ static void join_at(walling *w, const vxm_edge *edge, vxm_radial_side *s, size_t
   for (size_t i = 0; i < count; i++) {
     const vxm_radial_side *next = &s[i + 1 < count ? i + 1 : 0];
     finding_of(w, s->face)->unclear |= count > 2 && s[i].rank == next->rank;
-    w->space[vxm_set_of(w->space, side_at(&s[i], true))] = vxm_set_of(w->space, side_at(next, false));
+    vxm_set_unite(w->space, side_at(&s[i], true), side_at(next, false));
   }
 }
 

@@ -32,7 +32,7 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   }
   for (size_t e = 0; status == VXM_OK && e < edges; e++)
     if (count[e] == 2)
-      l->patch[vxm_set_of(l->patch, pair[2 * e])] = vxm_set_of(l->patch, pair[2 * e + 1]);
+      vxm_set_unite(l->patch, pair[2 * e], pair[2 * e + 1]);
   vxm_free(l->state->context, count);
   vxm_free(l->state->context, pair);
   return status;

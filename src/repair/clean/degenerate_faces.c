@@ -163,7 +163,7 @@ static void warn_of_far(const removal *r) {
 }
 
 /** Faces have been reduced before: they have at least three corners, and no side from a vertex to itself. */
-vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_degenerate_faces(vxm_repair_state *state, bool *changed, vxm_error *error) {
   removal r = {.state = state};
   vxm_status status = VXM_OK;
   *changed = false;
@@ -178,10 +178,10 @@ vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error 
       r.flat[f] = r.flat[f] == 2;
     if (status == VXM_OK) {
       warn_of_far(&r);
-      vxm_repair_state_note_marked(state, VXM_PASS_ZERO_AREA, r.flat);
+      vxm_repair_state_note_marked(state, VXM_PASS_DEGENERATE_FACES, r.flat);
     }
     int64_t count = status == VXM_OK ? vxm_repair_state_remove_faces(state, r.flat) : 0;
-    state->counts[VXM_PASS_ZERO_AREA] += count;
+    state->counts[VXM_PASS_DEGENERATE_FACES] += count;
     *changed = count > 0;
   }
   vxm_free(state->context, r.flat);

@@ -24,6 +24,6 @@
  *
  * Nothing is looked at where no edge has more than two sides.
  */
-vxm_status vxm_align_diagonals(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_other_diagonals(vxm_repair_state *state, bool *changed, vxm_error *error);
 
 #endif

@@ -59,7 +59,7 @@ void vxm_repeats_find_fins(vxm_repeats *d) {
       if (d->at_edge[place] == 0)
         d->at_edge[place] = face + 1;
       else
-        d->parent[vxm_set_of(d->parent, face)] = vxm_set_of(d->parent, d->at_edge[place] - 1);
+        vxm_set_unite(d->parent, face, d->at_edge[place] - 1);
     }
   }
   for (size_t face = 0; face < d->soup->face_count; face++)
@@ -114,7 +114,7 @@ static bool join_shared(vxm_repeats *d) {
       if (d->at_edge[place] == 0)
         d->at_edge[place] = face + 1;
       else
-        d->parent[vxm_set_of(d->parent, face)] = vxm_set_of(d->parent, d->at_edge[place] - 1);
+        vxm_set_unite(d->parent, face, d->at_edge[place] - 1);
     }
   }
   return any;

@@ -107,7 +107,7 @@ static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
     if (remove[f])
       vxm_provenance_drop(state->provenance, state->soup->face_parts[f]);
   int64_t count = vxm_repair_state_remove_faces(state, remove);
-  state->counts[VXM_PASS_SMALL_PARTS] += count;
+  state->counts[VXM_PASS_SMALL_COMPONENTS] += count;
   *changed = count > 0;
   vxm_free(state->context, remove);
   return VXM_OK;
@@ -118,7 +118,7 @@ static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
  * The one with the largest area always stays, and cavities, closed ones that look inward, with what they are
  * in.
  */
-vxm_status vxm_pass_small_parts(vxm_repair_state *state, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_small_components(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   if (state->options.drop_faces <= 0 && !(state->options.drop_volume > 0))
     return VXM_OK;

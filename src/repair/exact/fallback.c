@@ -146,7 +146,7 @@ static vxm_status wrap_marked(vxm_repair_state *state, const uint8_t *faces, vxm
  * volumes to compare. */
 vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!(state->options.fallback_alpha > 0) || state->ununited == 0)
+  if (!(state->options.fallback_alpha > 0) || state->union_failures == 0)
     return VXM_OK;
   int64_t count = 0;
   vxm_status status = VXM_OK;
@@ -156,8 +156,8 @@ vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *
   if (status == VXM_OK && count > 0) {
     status = wrap_marked(state, faces, error);
     *changed = true;
-    state->wrapped += count;
-    state->ununited = 0;
+    state->wrapped_parts += count;
+    state->union_failures = 0;
     if (state->provenance)
       vxm_provenance_forget_left(state->provenance);
   }

@@ -42,12 +42,12 @@ static void tell(leaving *l, const vxm_soup *soup) {
   vxm_repair_state *state = l->state;
   const uint32_t *parts = state->provenance ? state->soup->face_parts : NULL;
   if (!parts)
-    state->ununited = 0; /* of an earlier round; parts that are followed count once */
+    state->union_failures = 0; /* of an earlier round; parts that are followed count once */
   for (size_t c = 0; !parts && c < l->count; c++)
-    state->ununited += l->left[c];
+    state->union_failures += l->left[c];
   for (size_t f = 0; parts && f < soup->face_count; f++)
     if (l->left[l->component[f]] && l->origin[f] != VXM_NO_FACE)
-      state->ununited += vxm_provenance_leave(state->provenance, parts[l->origin[f]]);
+      state->union_failures += vxm_provenance_leave(state->provenance, parts[l->origin[f]]);
 }
 
 /** Counts and names the parts that were left: those of the mesh as it was read, if they are followed. What is
@@ -120,7 +120,7 @@ vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *err
   int64_t emptied = 0;
   if (status == VXM_OK && *changed)
     status = vxm_union_loss_find(&emptied, state->soup, soup, error);
-  state->emptied = vxm_max(state->emptied, emptied);
+  state->emptied_parts = vxm_max(state->emptied_parts, emptied);
   if (status == VXM_OK && *changed) {
     state->counts[VXM_PASS_UNION] += report.united + report.cut;
     return vxm_repair_state_adopt(state, soup, origin, error);
@@ -133,7 +133,7 @@ vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *err
 /** Again where vertices were moved apart after that: into what lies nearer still, as beside slivers. */
 vxm_status vxm_pass_reunion(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!is_asked_for(state) || state->counts[VXM_PASS_APART] == 0 || state->ununited > 0)
+  if (!is_asked_for(state) || state->counts[VXM_PASS_PERTURB_COINCIDENT] == 0 || state->union_failures > 0)
     return VXM_OK;
   vxm_face_pairs pairs;
   vxm_status status = vxm_self_intersections_find(&pairs, state->soup, 1, error);

@@ -62,9 +62,9 @@ static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_repair_stat
       status = openmesh->fill(out, origin, &filled, &left, soup, edges, error);
   }
   if (status == VXM_OK)
-    state->unfilled = left;
+    state->unfilled_holes = left;
   if (status == VXM_OK)
-    state->filled += filled;
+    state->filled_holes += filled;
   return status;
 }
 
@@ -118,9 +118,9 @@ static vxm_status fan_the_rest(vxm_repair_state *state, size_t most, bool *chang
   vxm_status status = vxm_repair_state_edges(state, error);
   if (status == VXM_OK)
     status = vxm_fill_fans(state, most, &closed, error);
-  state->fanned += closed;
-  state->filled += closed;
-  state->unfilled = closed < state->unfilled ? state->unfilled - closed : 0;
+  state->fan_fallbacks += closed;
+  state->filled_holes += closed;
+  state->unfilled_holes = closed < state->unfilled_holes ? state->unfilled_holes - closed : 0;
   *changed |= closed > 0;
   return status;
 }
@@ -139,7 +139,7 @@ vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *e
     int64_t closed;
     status = vxm_fill_fans(state, most, &closed, error);
     *changed = status == VXM_OK && closed > 0;
-    state->filled += closed;
+    state->filled_holes += closed;
     return status;
   }
   uint8_t *sheets = vxm_repair_state_scratch(state, state->soup->face_count, sizeof *sheets, &status, error);
@@ -147,7 +147,7 @@ vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *e
     status = vxm_find_sheets(sheets, state, error);
   if (status == VXM_OK)
     status = fill_by_module(state, sheets, most, changed, error);
-  if (status == VXM_OK && state->unfilled > 0)
+  if (status == VXM_OK && state->unfilled_holes > 0)
     status = fan_the_rest(state, most, changed, error);
   vxm_free(state->context, sheets);
   return status;

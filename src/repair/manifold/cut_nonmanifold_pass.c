@@ -21,7 +21,7 @@ static vxm_status adopt(vxm_repair_state *state, vxm_soup *soup, vxm_error *erro
  * or vertex has too many. No face is lost; a polygon that touches itself becomes triangles. What is manifold
  * already stays as it is.
  */
-vxm_status vxm_pass_separation(vxm_repair_state *state, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_cut_nonmanifold(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   if (!vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) || state->options.wrap_alpha > 0)
     return VXM_OK;
@@ -36,7 +36,7 @@ vxm_status vxm_pass_separation(vxm_repair_state *state, bool *changed, vxm_error
     status = vxm_cut_nonmanifold(&soup, &split, &stitched, state->soup, error);
   if (status != VXM_OK)
     return status;
-  state->counts[VXM_PASS_SEPARATION] += split;
+  state->counts[VXM_PASS_CUT_NONMANIFOLD] += split;
   *changed = true;
   return adopt(state, soup, error);
 }

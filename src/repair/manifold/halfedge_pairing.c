@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/manifold/halfedge_pairing.h"
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/sort.h"
 
 #include <math.h>
@@ -128,12 +129,8 @@ static bool is_forward(const building *b, const span *s, uint32_t side) {
 
 /* ---- Joining ---- */
 
-static uint32_t root_of(uint32_t *patch, uint32_t face) {
-  while (patch[face] != face) {
-    patch[face] = patch[patch[face]];
-    face = patch[face];
-  }
-  return face;
+static uint32_t patch_of(const building *b, uint32_t side) {
+  return vxm_set_of_u32(b->patch, b->pairing->face[side]);
 }
 
 /** Joins the sides of plain edges and makes patches of the faces; returns the largest number of sides. */
@@ -148,7 +145,7 @@ static uint32_t join_plain(building *b) {
     if (is_forward(b, &s, p) == is_forward(b, &s, q))
       continue;
     vxm_halfedge_pairing_join(b->pairing, p, q);
-    b->patch[root_of(b->patch, b->pairing->face[p])] = root_of(b->patch, b->pairing->face[q]);
+    b->patch[patch_of(b, p)] = patch_of(b, q);
   }
   return largest;
 }
@@ -160,9 +157,11 @@ static void join_wedges(building *b) {
     if (count < 3)
       continue;
     for (size_t i = 0; i < count; i++) {
-      uint32_t side = side_of(b, s.begin + (uint32_t)i), face = b->pairing->face[side];
-      b->around[i] = (vxm_radial_side){
-          .side = side, .face = face, .group = root_of(b->patch, face), .forward = is_forward(b, &s, side)};
+      uint32_t side = side_of(b, s.begin + (uint32_t)i);
+      b->around[i] = (vxm_radial_side){.side = side,
+                                       .face = b->pairing->face[side],
+                                       .group = patch_of(b, side),
+                                       .forward = is_forward(b, &s, side)};
     }
     vxm_radial_sort_match(b->around, count, soup, vxm_position(soup, s.low), vxm_position(soup, s.high),
                           b->pairing->scale);

@@ -306,7 +306,7 @@ static vxm_status move_by(moving *m, vxm_merge_rule rule, int64_t *moved, vxm_er
   if (status == VXM_OK)
     status = move_shared(m, moved, error);
   vxm_free(state->context, m->map);
-  state->counts[VXM_PASS_APART] += *moved;
+  state->counts[VXM_PASS_PERTURB_COINCIDENT] += *moved;
   return status;
 }
 
@@ -319,7 +319,7 @@ static bool are_floats(const vxm_extent *extent) {
 }
 
 /** What finds no free position stays, for the verification to find. */
-vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_perturb_coincident(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   if (!vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD))
     return VXM_OK;
@@ -329,7 +329,7 @@ vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *err
   m.rule = vxm_merge_rule_of(m.diagonal);
   int64_t moved, as_floats = 0;
   vxm_status status = move_by(&m, m.rule, &moved, error);
-  state->together = (int64_t)m.shared - moved;
+  state->unparted_vertices = (int64_t)m.shared - moved;
   m.floats_only = true;
   if (status == VXM_OK && !state->options.single_precision && !state->doubles_only && are_floats(&extent))
     status = move_by(&m, VXM_MERGE_FLOAT, &as_floats, error);

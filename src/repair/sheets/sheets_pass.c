@@ -114,7 +114,7 @@ vxm_status vxm_pass_sheets(vxm_repair_state *state, bool *changed, vxm_error *er
   vxm_free(state->context, sheets);
   if (status == VXM_OK) {
     state->sheets += count;
-    state->open_parts = state->unfilled = 0;
+    state->open_parts = state->unfilled_holes = 0;
     *changed = true;
   }
   return status;

@@ -17,7 +17,7 @@ static vxm_status join_faces(const vxm_edge_groups *g, const vxm_soup *soup, siz
       if (*other == 0)
         *other = f + 1;
       else
-        g->of_face[vxm_set_of(g->of_face, f)] = vxm_set_of(g->of_face, *other - 1);
+        vxm_set_unite(g->of_face, f, *other - 1);
     }
   }
   return VXM_OK;

@@ -3,6 +3,7 @@
 #ifndef VXM_REPAIR_STATE_EDGE_GROUPS_H
 #define VXM_REPAIR_STATE_EDGE_GROUPS_H
 
+#include "mesh/disjoint_sets.h"
 #include "repair/state/repair_state.h"
 
 /** What the edges of a group tell. */
@@ -36,12 +37,5 @@ void vxm_edge_groups_destroy(vxm_edge_groups *groups, vxm_context *context);
  */
 void vxm_edge_groups_list(const vxm_edge_groups *groups, size_t face_count, const uint8_t *chosen,
                           size_t *begin, size_t *faces);
-
-/** The representative of a set, with path halving; `parent` of a new set is itself. */
-static inline size_t vxm_set_of(size_t *parent, size_t member) {
-  while (parent[member] != member)
-    member = parent[member] = parent[parent[member]];
-  return member;
-}
 
 #endif

@@ -24,19 +24,19 @@ typedef enum vxm_pass {
   VXM_PASS_EXACT_WELD,
   VXM_PASS_TOLERANT_WELD,
   VXM_PASS_REPEATED_CORNERS,
-  VXM_PASS_ZERO_AREA,
+  VXM_PASS_DEGENERATE_FACES,
   VXM_PASS_T_JUNCTIONS,
   VXM_PASS_DUPLICATES,
   VXM_PASS_OPPOSITE_DUPLICATES,
   VXM_PASS_INNER_WALLS,
   VXM_PASS_ORIENTATION,
   VXM_PASS_WRAP,
-  VXM_PASS_SEPARATION,
+  VXM_PASS_CUT_NONMANIFOLD,
   VXM_PASS_CLOSING,
-  VXM_PASS_SMALL_PARTS,
+  VXM_PASS_SMALL_COMPONENTS,
   VXM_PASS_SHEETS,
   VXM_PASS_UNION,
-  VXM_PASS_APART,
+  VXM_PASS_PERTURB_COINCIDENT,
   VXM_PASS_UNUSED,
   VXM_PASS_COUNT
 } vxm_pass;
@@ -74,27 +74,27 @@ typedef struct vxm_repair_state {
   int64_t counts[VXM_PASS_COUNT];
   vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
   bool renumbered;                         /**< faces have other numbers than they came in with */
-  int64_t nonorientable;                   /**< patches, in the last pass of orientation */
-  bool holds;                              /**< it met patches that hold each other: see find_held */
-  int64_t shared;                          /**< repeated faces that the last pass of duplicates left */
+  int64_t nonorientable_patches;           /**< in the last pass of orientation */
+  bool has_held_patches;                   /**< it met patches that hold each other: see find_held */
+  int64_t shared_faces;                    /**< repeated faces that the last pass of duplicates left */
   int64_t open_parts;                      /**< that the last pass of closing left open */
   int64_t sheets;                          /**< open components that became plates, or went */
-  int64_t filled;                          /**< holes that were filled */
-  int64_t unfilled;                        /**< holes that were to be filled and could not be */
-  int64_t fanned;                          /**< holes that a module left to fans */
-  int64_t ununited;           /**< parts that were to be united and still cut through themselves or others */
-  int64_t emptied;            /**< closed parts of whose inside unions have taken something away */
-  int64_t tries;              /**< of the union */
-  int64_t wrapped;            /**< parts that were wrapped as the union had left them */
-  bool collapses;             /**< the shortest edges of unions are collapsed */
-  bool doubles_only;          /**< vertices are not to differ as 32-bit floats: that would have faces meet */
-  int64_t crossings[2];       /**< self-intersections before and after, or -1 */
-  int64_t together;           /**< vertices that were to be moved apart and could not be */
-  vxm_provenance *provenance; /**< what becomes of the parts, or NULL */
-  vxm_lost_parts lost; /**< parts that a first run would have lost; while soup->face_parts tells a face's
-                          part, no  kind of repeated face of theirs goes altogether */
-  bool guards;         /**< this run is to keep those */
-  int64_t lost_parts;  /**< that are lost for all that */
+  int64_t filled_holes;                    /**< holes that were filled */
+  int64_t unfilled_holes;                  /**< holes that were to be filled and could not be */
+  int64_t fan_fallbacks;                   /**< holes that a module left to fans */
+  int64_t union_failures; /**< parts that were to be united and still cut through themselves or others */
+  int64_t emptied_parts;  /**< closed parts of whose inside unions have taken something away */
+  int64_t union_tries;    /**< how often parts were united */
+  int64_t wrapped_parts;  /**< parts that were wrapped as the union had left them */
+  bool collapses;         /**< the shortest edges of unions are collapsed */
+  bool doubles_only;      /**< vertices are not to differ as 32-bit floats: that would have faces meet */
+  int64_t self_intersections[2]; /**< before and after, or -1 */
+  int64_t unparted_vertices;     /**< vertices that were to be moved apart and could not be */
+  vxm_provenance *provenance;    /**< what becomes of the parts, or NULL */
+  vxm_lost_parts lost;    /**< parts that a first run would have lost; while soup->face_parts tells a face's
+                             part, no kind of repeated face of theirs goes altogether */
+  bool guards_lost_parts; /**< this run is to keep those */
+  int64_t lost_parts;     /**< that are lost for all that */
 } vxm_repair_state;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */
@@ -106,19 +106,19 @@ vxm_status vxm_pass_exact_weld(vxm_repair_state *state, bool *changed, vxm_error
 vxm_status vxm_pass_tolerant_weld(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_t_junctions(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_repeated_corners(vxm_repair_state *state, bool *changed, vxm_error *error);
-vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_degenerate_faces(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_duplicates(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_wrap(vxm_repair_state *state, bool *changed, vxm_error *error);
-vxm_status vxm_pass_separation(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_cut_nonmanifold(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *error);
-vxm_status vxm_pass_small_parts(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_small_components(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_sheets(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_short_edges(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_reunion(vxm_repair_state *state, bool *changed, vxm_error *error);
-vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_perturb_coincident(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_repair_state *state, bool *changed, vxm_error *error);
 
 /** A block of scratch, zeroed; on failure NULL, with *status and *error set. */
@@ -166,7 +166,8 @@ static inline bool vxm_repair_state_reaches(const vxm_repair_state *state, vxm_l
 }
 /** Whether a face is of a part that a first run would have lost. */
 static inline bool vxm_repair_state_guards(const vxm_repair_state *state, size_t face) {
-  return state->guards && state->soup->face_parts && state->lost.lost[state->soup->face_parts[face]];
+  return state->guards_lost_parts && state->soup->face_parts &&
+         state->lost.lost[state->soup->face_parts[face]];
 }
 /** Says that a pass changes a vertex or a face, if it is the first one of the pass. */
 void vxm_repair_state_note_vertex(vxm_repair_state *state, vxm_pass pass, size_t vertex);

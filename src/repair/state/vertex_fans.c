@@ -24,8 +24,8 @@ static vxm_status join_corners(const vxm_soup *soup, const uint32_t *sides, uint
       uint32_t *here = &first[edge][downward], *there = &first[edge][!downward];
       *here = *here == NONE ? (uint32_t)(begin + i) : *here;
       *there = *there == NONE ? (uint32_t)(begin + next) : *there;
-      vxm_sets_join(parent, *here, (uint32_t)(begin + i));
-      vxm_sets_join(parent, *there, (uint32_t)(begin + next));
+      vxm_set_unite_in_order(parent, *here, (uint32_t)(begin + i));
+      vxm_set_unite_in_order(parent, *there, (uint32_t)(begin + next));
     }
   }
   return VXM_OK;

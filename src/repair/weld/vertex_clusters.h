@@ -3,6 +3,7 @@
 #ifndef VXM_REPAIR_WELD_VERTEX_CLUSTERS_H
 #define VXM_REPAIR_WELD_VERTEX_CLUSTERS_H
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/soup.h"
 
 /** A union-find structure, whose clusters know their vertices and their boxes. */
@@ -28,11 +29,9 @@ typedef struct vxm_vertex_clusters {
 vxm_status vxm_vertex_clusters_create(vxm_vertex_clusters *clusters, const vxm_soup *soup, double scale,
                                       double width, vxm_context *context, vxm_error *error);
 void vxm_vertex_clusters_destroy(vxm_vertex_clusters *clusters);
-/** The lowest vertex of a vertex's cluster, its root. Ways to roots become shorter with each look. */
+/** The lowest vertex of a vertex's cluster, its root. */
 static inline uint32_t vxm_vertex_clusters_root(const vxm_vertex_clusters *clusters, uint32_t v) {
-  while (clusters->parent[v] != v)
-    v = clusters->parent[v] = clusters->parent[clusters->parent[v]];
-  return v;
+  return vxm_set_of_u32(clusters->parent, v);
 }
 
 /** Whether the clusters of two roots may become one: not too wide or large, and no face with corners in both.

@@ -10,6 +10,7 @@
 #include "voxel/parity/parity_union.h"
 #include "voxel/parity/vote.h"
 #include "voxel/surface/surface.h"
+#include "voxmend/sparse.h"
 
 /** Parts that voters decide; some of them have odd edges, else all voters would agree. */
 typedef struct vxm_vote_job {

@@ -8,6 +8,7 @@
 #include "voxel/closest/band_tile.h"
 #include "voxel/closest/distance_bvh.h"
 #include "voxel/surface/surface.h"
+#include "voxmend/field.h"
 
 typedef struct vxm_distance_search {
   vxm_context *context;

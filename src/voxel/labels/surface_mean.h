@@ -4,6 +4,7 @@
 #define VXM_VOXEL_LABELS_SURFACE_MEAN_H
 
 #include "voxel/labels/surface_paint.h"
+#include "voxmend/grid.h"
 
 /** The sum over the surface within a voxel: colour times area, and area. */
 typedef struct vxm_surface_sum {

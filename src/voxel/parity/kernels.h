@@ -6,6 +6,7 @@
 #ifndef VXM_VOXEL_PARITY_KERNELS_H
 #define VXM_VOXEL_PARITY_KERNELS_H
 
+#include "base/cpu.h"
 #include "voxel/parity/columns.h"
 #include "voxel/parity/crossing_bins.h"
 
@@ -35,7 +36,7 @@ typedef struct vxm_raster_task {
 } vxm_raster_task;
 
 typedef struct vxm_kernels {
-  const char *name;
+  vxm_cpu_level level;
   /** Places `count` positions, with their cells (NULL = not asked for), each displaced by its entry of the
    * noise (NULL = none); false if one is not finite or beyond VXM_NARROW_MAX (it is stored as 0). */
   bool (*place)(int32_t (*out)[4], uint64_t *cells, const double *positions, const uint32_t *entries,
@@ -75,7 +76,7 @@ typedef struct vxm_kernels {
 /** The best build that may run (base/cpu.h), or the one forced. */
 const vxm_kernels *vxm_kernels_get(void);
 /** All builds that may run, best last. */
-size_t vxm_kernels_all(const vxm_kernels *out[4]);
+size_t vxm_kernels_all(const vxm_kernels *out[3]);
 /** Makes vxm_kernels_get return this one; NULL = the best again. For tests, while nothing runs. */
 void vxm_kernels_force(const vxm_kernels *kernels);
 

@@ -4,6 +4,7 @@
 #define VXM_VOXEL_PARITY_VOTE_H
 
 #include "base/context.h"
+#include "voxmend/voxelize.h"
 
 /** What voters came to. */
 typedef struct vxm_vote_tally {

@@ -4,6 +4,7 @@
 #define VXM_VOXEL_PARTS_FACE_LABELS_H
 
 #include "mesh/soup.h"
+#include "voxmend/field.h"
 
 /** Values have 16 bits, and 0 is none. */
 enum { VXM_LABELS_MAX = 65535 };

@@ -2,6 +2,7 @@
 #include "voxel/parts/parts.h"
 #include "mesh/components.h"
 #include "mesh/containment.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
 
@@ -144,12 +145,6 @@ static vxm_status find_kinds(builder *b) {
 
 /* ---- Cavities ---- */
 
-static uint32_t root_of(const builder *b, uint32_t component) {
-  while (b->root[component] != component)
-    component = b->root[component] = b->root[b->root[component]];
-  return component;
-}
-
 static vxm_status find_cavities(builder *b, vxm_error *error) {
   vxm_split *s = b->split;
   size_t solid_count = 0;
@@ -183,7 +178,7 @@ static vxm_status find_cavities(builder *b, vxm_error *error) {
   /* A part with a capped component is capped. */
   for (size_t c = 0; status == VXM_OK && c < s->component_count; c++)
     if (b->kind[c] == VXM_PART_CAPPED)
-      b->kind[root_of(b, (uint32_t)c)] = VXM_PART_CAPPED;
+      b->kind[vxm_set_of_u32(b->root, (uint32_t)c)] = VXM_PART_CAPPED;
   vxm_free(s->context, solid);
   return status;
 }
@@ -209,7 +204,7 @@ static vxm_status number_parts(builder *b) {
   }
   s->part_count = next;
   for (size_t c = 0; c < s->component_count; c++)
-    s->part[c] = s->part[root_of(b, (uint32_t)c)];
+    s->part[c] = s->part[vxm_set_of_u32(b->root, (uint32_t)c)];
   for (size_t l = 0; l < s->loops.count; l++) {
     s->loop_part[l] = s->part[b->loop_component[l]];
     s->capped_loops += s->loop_part[l] < s->kind_end[VXM_PART_CAPPED];

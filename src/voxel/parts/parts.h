@@ -5,6 +5,7 @@
 
 #include "mesh/boundary_loops.h"
 #include "mesh/caps.h"
+#include "voxmend/voxelize.h"
 
 typedef enum vxm_part_kind {
   VXM_PART_CLOSED, /**< every edge has an even number of faces */

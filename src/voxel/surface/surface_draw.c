@@ -128,17 +128,14 @@ bool vxm_surface_draw_some(const vxm_surface_pen *pen, const uint32_t *list, siz
 
 extern const vxm_surface_build vxm_surface_build_plain, vxm_surface_build_avx2, vxm_surface_build_avx512;
 
+static const vxm_surface_build *const builds[] = VXM_CPU_BUILDS(vxm_surface_build);
+
 static _Atomic(const vxm_surface_build *) chosen;
 
 size_t vxm_surface_builds(const vxm_surface_build *out[3]) {
-  size_t count = 0;
-  out[count++] = &vxm_surface_build_plain;
-#if VXM_KERNELS_X86
-  if (vxm_cpu_has_avx2())
-    out[count++] = &vxm_surface_build_avx2;
-  if (vxm_cpu_has_avx512())
-    out[count++] = &vxm_surface_build_avx512;
-#endif
+  size_t count = (size_t)vxm_cpu_used() + 1;
+  for (size_t i = 0; i < count; i++)
+    out[i] = builds[i];
   return count;
 }
 
@@ -147,6 +144,6 @@ void vxm_surface_force(const vxm_surface_build *build) {
 }
 
 const vxm_surface_build *vxm_surface_best(void) {
-  const vxm_surface_build *forced = atomic_load_explicit(&chosen, memory_order_relaxed), *all[3];
-  return forced ? forced : all[vxm_surface_builds(all) - 1];
+  const vxm_surface_build *forced = atomic_load_explicit(&chosen, memory_order_relaxed);
+  return forced ? forced : builds[vxm_cpu_used()];
 }

@@ -94,7 +94,6 @@ typedef struct vxm_surface_pen {
 /** The loops that draw a triangle of ordinary size, built for several processors from surface_i64.inc; all
  * give the same bits. */
 struct vxm_surface_build {
-  const char *name;
   /** `box` is what the triangle and the tile have in common; `thin` is an axis along which the triangle meets
    * one voxel only, by which alone the box decides nothing else, or -1. Returns the rows looked at. */
   size_t (*draw)(const vxm_surface_pen *pen, const vxm_point *const v[3], const vxm_surface_box *box,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/chain.h"
+#include "mesh/disjoint_sets.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -45,9 +46,7 @@ static bool is_triangle(const uint32_t c[3]) {
 /* ---- Components and their boundary ---- */
 
 static uint32_t component_of(const builder *b, uint32_t triangle) {
-  while (b->parent[triangle] != triangle)
-    triangle = b->parent[triangle] = b->parent[b->parent[triangle]];
-  return triangle;
+  return vxm_set_of_u32(b->parent, triangle);
 }
 
 /** The sides of all triangles, by their lower point. */

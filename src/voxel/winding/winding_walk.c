@@ -3,21 +3,13 @@
 #include "base/cpu.h"
 
 #include <pthread.h>
-#include <string.h>
 
 extern const vxm_winding_kernels vxm_winding_kernels_plain, vxm_winding_kernels_avx2,
     vxm_winding_kernels_avx512;
 
 const vxm_winding_kernels *vxm_winding_kernels_get(void) {
-  const char *name = vxm_kernels_get()->name;
-#if VXM_KERNELS_X86
-  if (strcmp(name, "avx512") == 0)
-    return &vxm_winding_kernels_avx512;
-  if (strcmp(name, "avx2") == 0)
-    return &vxm_winding_kernels_avx2;
-#endif
-  (void)name;
-  return &vxm_winding_kernels_plain;
+  static const vxm_winding_kernels *const builds[] = VXM_CPU_BUILDS(vxm_winding_kernels);
+  return builds[vxm_kernels_get()->level];
 }
 
 /* ---- Tables ---- */

@@ -12,10 +12,7 @@ typedef struct walk {
 } walk;
 
 static bool meets(const walk *w, const int64_t at[3], int64_t side) {
-  bool yes = !w->is_ended;
-  for (int a = 0; a < 3; a++)
-    yes &= at[a] < w->end[a] && at[a] + side > w->begin[a];
-  return yes;
+  return !w->is_ended && vxm_cube_meets(at, side, w->begin, w->end);
 }
 
 static void add_block(walk *w, const int64_t at[3]) {

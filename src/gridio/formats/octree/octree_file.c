@@ -183,13 +183,6 @@ typedef struct load {
   const int64_t *begin, *end;
 } load;
 
-static bool meets(const load *l, const int64_t at[3], int64_t side) {
-  bool yes = true;
-  for (int a = 0; a < 3; a++)
-    yes &= at[a] < l->end[a] && at[a] + side > l->begin[a];
-  return yes;
-}
-
 static vxm_octree_state load_node(load *l, int level, size_t index, const int64_t at[3]);
 
 /** A mixed child of a node above tiles, at a level. */
@@ -213,7 +206,7 @@ static vxm_octree_state load_node(load *l, int level, size_t index, const int64_
     vxm_octree_place(child, place);
     for (int a = 0; a < 3; a++)
       place[a] = at[a] + place[a] * side;
-    if (!meets(l, place, side))
+    if (!vxm_cube_meets(place, side, l->begin, l->end))
       continue;
     if (node->mixed >> child & 1)
       cell = load_child(l, level - 1, vxm_octree_index(node, child), place);

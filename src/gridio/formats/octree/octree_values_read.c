@@ -155,13 +155,6 @@ static int64_t side_of(int level) {
   return level < 0 ? 4 : vxm_octree_side(level + 1);
 }
 
-static bool meets(const decoder *d, const int64_t at[3], int64_t side) {
-  bool yes = true;
-  for (int a = 0; a < 3; a++)
-    yes &= at[a] < d->end[a] && at[a] + side > d->begin[a];
-  return yes;
-}
-
 static void child_place(int64_t out[3], const int64_t at[3], int level, unsigned child) {
   vxm_octree_place(child, out);
   for (int a = 0; a < 3; a++)
@@ -175,7 +168,7 @@ static uint64_t bits_of(const decoder *d, vxm_octree_part brick) {
 /** Gives all voxels of a part one value. */
 static void fill(const decoder *d, int level, vxm_octree_part part, const int64_t at[3],
                  const unsigned char *value) {
-  if (!d->field || !meets(d, at, side_of(level)))
+  if (!d->field || !vxm_cube_meets(at, side_of(level), d->begin, d->end))
     return;
   if (part.kind == VXM_OCTREE_FULL) {
     fill_cube(d, at, side_of(level), value);

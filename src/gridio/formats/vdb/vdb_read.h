@@ -5,6 +5,7 @@
 #define VXM_GRIDIO_FORMATS_VDB_VDB_READ_H
 
 #include "gridio/common/values.h"
+#include "voxmend/sparse.h"
 
 /** Whether the content is that of the format (vxm_grid_format.sniff). */
 bool vxm_vdb_sniff(const vxm_input *input);

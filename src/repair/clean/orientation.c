@@ -362,7 +362,7 @@ static bool turn_outward(orienting *o) {
     for (size_t i = 0; i < count; i++)
       if (!(fabs(containment.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
         containment.volume[i] = 0;
-    o->state->holds = memchr(held, 1, count) != NULL;
+    o->state->has_held_patches = memchr(held, 1, count) != NULL;
     choose_sides(&containment, solid, held, is_inside_out(o, &containment, solid), over, known, chain);
     bool any = memchr(over, 1, count) != NULL;
     for (size_t f = 0; any && f < o->soup->face_count; f++)
@@ -428,13 +428,13 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
                  .soup = state->soup,
                  .error = VXM_ERROR_INIT,
                  .frame = vxm_unit_scale_of(extent.bounds)};
-  state->holds = false;
+  state->has_held_patches = false;
   bool done = orient(&o);
-  state->nonorientable = 0;
+  state->nonorientable_patches = 0;
   if (done)
     done = note_turned(&o, changed);
   for (size_t i = 0; done && i < o.patch_count; i++)
-    state->nonorientable += o.patches[i].conflicts > 0;
+    state->nonorientable_patches += o.patches[i].conflicts > 0;
   if (done && *changed)
     vxm_repair_state_turn(state, o.turn);
   vxm_free(state->context, o.patches);

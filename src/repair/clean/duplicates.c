@@ -9,7 +9,7 @@ static void count_faces(vxm_repair_state *state, const vxm_copies *copies, const
   for (size_t f = 0; f < state->soup->face_count; f++) {
     same += remove[f] && kinds[f] == VXM_REPEAT_SAME;
     opposite += remove[f] && kinds[f] != VXM_REPEAT_SAME;
-    state->shared += !remove[f] && seen[copies[f].first];
+    state->shared_faces += !remove[f] && seen[copies[f].first];
     seen[copies[f].first] |= !remove[f];
   }
   if (same + opposite > 0)
@@ -55,7 +55,7 @@ static vxm_status look_for_repeated(vxm_repair_state *state, bool *any, vxm_erro
 /** Of the faces that repeat each other leaves as many as are needed. */
 vxm_status vxm_pass_duplicates(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  state->shared = 0;
+  state->shared_faces = 0;
   if (state->options.keep_duplicates)
     return VXM_OK;
   bool found = true;
