@@ -16,6 +16,7 @@ enum {
 };
 
 static const double CHORD_PART = 0.25; /**< of the walk between its ends, at most */
+static const double SLIT_PART = 0.03;  /**< the same where a flat loop is cut: at the mouth of a slit */
 static const double FLAT = 0.5;        /**< vector area by area of the fan: less is far from flat */
 
 /** One edge of a loop, from a vertex to that of the next step. */
@@ -193,10 +194,11 @@ typedef struct cut {
   size_t i, j; /**< steps, i < j */
 } cut;
 
-/** The chord that is shortest against the shorter of the two walks between its ends, of those sampled. */
-static cut find_cut(const vxm_caps *caps, const step *steps, size_t count) {
+/** The chord that is shortest against the shorter of the two walks between its ends, of those sampled, and
+ * shorter than a part of it. */
+static cut find_cut(const vxm_caps *caps, const step *steps, size_t count, double part) {
   size_t samples = count < SAMPLES ? count : SAMPLES;
-  double *along = caps->along, best = CHORD_PART;
+  double *along = caps->along, best = part;
   cut found = {0};
   along[0] = 0;
   for (size_t i = 0; i < count; i++)
@@ -270,11 +272,11 @@ vxm_status vxm_caps_add(vxm_caps *caps, const vxm_boundary_loops *loops, size_t 
   size_t top = 0, length = count;
   size_t sizes[PENDING_MAX], depth = 0, tests = 0;
   for (;;) {
-    bool wants_cut = length > LONG || (length >= SHORT && !is_flat(caps, caps->steps + top, length));
     cut at = {0};
-    if (wants_cut && depth < PENDING_MAX && tests < TESTS_PER_EDGE * count + TESTS_FREE) {
+    if (length >= SHORT && depth < PENDING_MAX && tests < TESTS_PER_EDGE * count + TESTS_FREE) {
+      bool is_fan = length <= LONG && is_flat(caps, caps->steps + top, length);
       tests += length + SAMPLES * SAMPLES / 2;
-      at = find_cut(caps, caps->steps + top, length);
+      at = find_cut(caps, caps->steps + top, length, is_fan ? SLIT_PART : CHORD_PART);
     }
     if (at.found) {
       size_t parts[2];

@@ -148,23 +148,15 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{separate_until_quiet, true},
-                 {vxm_pass_closing, true},
-                 {vxm_pass_small_parts, true},
-                 {vxm_pass_sheets, false},
-                 {unite, false},
-                 {wrap_the_rest, false},
-                 {collapse_short_edges, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true},
-                 {vxm_pass_reunion, false},
-                 {collapse_short_edges, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true},
-                 {vxm_pass_reunion, false},
-                 {collapse_short_edges, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true}};
+  } further[] = {{vxm_pass_meeting_holes, true}, {separate_until_quiet, true},
+                 {vxm_pass_closing, true},       {vxm_pass_small_parts, true},
+                 {vxm_pass_sheets, false},       {unite, false},
+                 {wrap_the_rest, false},         {collapse_short_edges, false},
+                 {vxm_pass_separation, false},   {move_apart, true},
+                 {vxm_pass_reunion, false},      {collapse_short_edges, false},
+                 {vxm_pass_separation, false},   {move_apart, true},
+                 {vxm_pass_reunion, false},      {collapse_short_edges, false},
+                 {vxm_pass_separation, false},   {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   *moved = false;
