@@ -96,6 +96,18 @@ bool vxm_cap_plan_add(vxm_cap_plan *p, size_t loop) {
   return added;
 }
 
+bool vxm_cap_plan_take(vxm_cap_plan *p, const uint32_t (*triangles)[3], size_t count) {
+  vxm_caps *caps = &p->caps;
+  void *all = caps->triangles;
+  if (vxm_grow(p->state->context, &all, &caps->triangle_capacity, caps->triangle_count + count,
+               sizeof *caps->triangles, &p->error) != VXM_OK)
+    return false;
+  caps->triangles = all;
+  memcpy(caps->triangles + caps->triangle_count, triangles, count * sizeof *triangles);
+  caps->triangle_count += count;
+  return true;
+}
+
 void vxm_cap_plan_pass(vxm_cap_plan *p, size_t loop) {
   p->triangles[loop + 1] = p->caps.triangle_count;
   p->points[loop + 1] = p->caps.point_count;

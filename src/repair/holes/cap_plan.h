@@ -46,6 +46,8 @@ static inline size_t vxm_cap_plan_face(const vxm_cap_plan *p, size_t loop) {
 bool vxm_cap_plan_is_plain(const vxm_cap_plan *p, size_t loop);
 /** Makes the cap of the next loop. False: see p->error. */
 bool vxm_cap_plan_add(vxm_cap_plan *p, size_t loop);
+/** Adds triangles between old vertices. False: see p->error. */
+bool vxm_cap_plan_take(vxm_cap_plan *p, const uint32_t (*triangles)[3], size_t count);
 /** The next loop has the triangles that were added since, or none. */
 void vxm_cap_plan_pass(vxm_cap_plan *p, size_t loop);
 /** The area of a cap. */

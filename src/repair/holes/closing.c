@@ -3,6 +3,7 @@
 #include "repair/external/openmesh.h"
 #include "repair/holes/fill_fans.h"
 #include "repair/holes/meeting_rims.h"
+#include "repair/holes/rim_bands.h"
 #include "repair/state/face_subset.h"
 #include "repair/state/vertex_fans.h"
 
@@ -155,6 +156,13 @@ vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *e
   if (status != VXM_OK || state->edges.odd == 0)
     return status;
   int64_t closed;
+  status = vxm_fill_bands(state, most, &closed, error);
+  state->filled += closed;
+  *changed = closed > 0;
+  if (status == VXM_OK)
+    status = vxm_repair_state_count_edges(state, error);
+  if (status != VXM_OK || state->edges.odd == 0)
+    return status;
   if (state->options.hole_fill == VXM_HOLE_FILL_FAN) {
     status = vxm_fill_fans(state, most, &closed, error);
     *changed |= closed > 0;
