@@ -18,6 +18,7 @@ enum {
 static const double CHORD_PART = 0.25; /**< of the walk between its ends, at most */
 static const double SLIT_PART = 0.03;  /**< the same where a flat loop is cut: at the mouth of a slit */
 static const double FLAT = 0.5;        /**< vector area by area of the fan: less is far from flat */
+static const double NO_SLIT = 0.9;     /**< the same: more has no slit that matters */
 
 /** One edge of a loop, from a vertex to that of the next step. */
 typedef struct vxm_cap_step {
@@ -173,7 +174,8 @@ static vxm_status close_four(vxm_caps *caps, const step *steps, vxm_error *error
 
 /* ---- Cutting ---- */
 
-static bool is_flat(const vxm_caps *caps, const step *steps, size_t count) {
+/** The vector area of the fan by its area: 1 where it is plane and nothing turns back. */
+static double flatness(const vxm_caps *caps, const step *steps, size_t count) {
   vxm_vec3 sum = {0, 0, 0};
   double centroid[3], area = 0;
   centroid_of(caps, steps, count, centroid);
@@ -185,7 +187,7 @@ static bool is_flat(const vxm_caps *caps, const step *steps, size_t count) {
     sum = vxm_vec3_sum(sum, cross);
     area += vxm_vec3_length(cross);
   }
-  return vxm_vec3_length(sum) >= FLAT * area;
+  return area > 0 ? vxm_vec3_length(sum) / area : 1;
 }
 
 /** Between which steps to cut a loop, if it is to be cut. */
@@ -274,9 +276,11 @@ vxm_status vxm_caps_add(vxm_caps *caps, const vxm_boundary_loops *loops, size_t 
   for (;;) {
     cut at = {0};
     if (length >= SHORT && depth < PENDING_MAX && tests < TESTS_PER_EDGE * count + TESTS_FREE) {
-      bool is_fan = length <= LONG && is_flat(caps, caps->steps + top, length);
-      tests += length + SAMPLES * SAMPLES / 2;
-      at = find_cut(caps, caps->steps + top, length, is_fan ? SLIT_PART : CHORD_PART);
+      double flat = length > LONG ? 0 : flatness(caps, caps->steps + top, length);
+      if (flat < NO_SLIT) {
+        tests += length + SAMPLES * SAMPLES / 2;
+        at = find_cut(caps, caps->steps + top, length, flat < FLAT ? CHORD_PART : SLIT_PART);
+      }
     }
     if (at.found) {
       size_t parts[2];
