@@ -16,7 +16,9 @@ enum {
 };
 
 static const double CHORD_PART = 0.25; /**< of the walk between its ends, at most */
+static const double SLIT_PART = 0.03;  /**< the same where a flat loop is cut: at the mouth of a slit */
 static const double FLAT = 0.5;        /**< vector area by area of the fan: less is far from flat */
+static const double NO_SLIT = 0.9;     /**< the same: more has no slit that matters */
 
 /** One edge of a loop, from a vertex to that of the next step. */
 typedef struct vxm_cap_step {
@@ -172,7 +174,8 @@ static vxm_status close_four(vxm_caps *caps, const step *steps, vxm_error *error
 
 /* ---- Cutting ---- */
 
-static bool is_flat(const vxm_caps *caps, const step *steps, size_t count) {
+/** The vector area of the fan by its area: 1 where it is plane and nothing turns back. */
+static double flatness(const vxm_caps *caps, const step *steps, size_t count) {
   vxm_vec3 sum = {0, 0, 0};
   double centroid[3], area = 0;
   centroid_of(caps, steps, count, centroid);
@@ -184,7 +187,7 @@ static bool is_flat(const vxm_caps *caps, const step *steps, size_t count) {
     sum = vxm_vec3_sum(sum, cross);
     area += vxm_vec3_length(cross);
   }
-  return vxm_vec3_length(sum) >= FLAT * area;
+  return area > 0 ? vxm_vec3_length(sum) / area : 1;
 }
 
 /** Between which steps to cut a loop, if it is to be cut. */
@@ -193,10 +196,11 @@ typedef struct cut {
   size_t i, j; /**< steps, i < j */
 } cut;
 
-/** The chord that is shortest against the shorter of the two walks between its ends, of those sampled. */
-static cut find_cut(const vxm_caps *caps, const step *steps, size_t count) {
+/** The chord that is shortest against the shorter of the two walks between its ends, of those sampled, and
+ * shorter than a part of it. */
+static cut find_cut(const vxm_caps *caps, const step *steps, size_t count, double part) {
   size_t samples = count < SAMPLES ? count : SAMPLES;
-  double *along = caps->along, best = CHORD_PART;
+  double *along = caps->along, best = part;
   cut found = {0};
   along[0] = 0;
   for (size_t i = 0; i < count; i++)
@@ -270,11 +274,13 @@ vxm_status vxm_caps_add(vxm_caps *caps, const vxm_boundary_loops *loops, size_t 
   size_t top = 0, length = count;
   size_t sizes[PENDING_MAX], depth = 0, tests = 0;
   for (;;) {
-    bool wants_cut = length > LONG || (length >= SHORT && !is_flat(caps, caps->steps + top, length));
     cut at = {0};
-    if (wants_cut && depth < PENDING_MAX && tests < TESTS_PER_EDGE * count + TESTS_FREE) {
-      tests += length + SAMPLES * SAMPLES / 2;
-      at = find_cut(caps, caps->steps + top, length);
+    if (length >= SHORT && depth < PENDING_MAX && tests < TESTS_PER_EDGE * count + TESTS_FREE) {
+      double flat = length > LONG ? 0 : flatness(caps, caps->steps + top, length);
+      if (flat < NO_SLIT) {
+        tests += length + SAMPLES * SAMPLES / 2;
+        at = find_cut(caps, caps->steps + top, length, flat < FLAT ? CHORD_PART : SLIT_PART);
+      }
     }
     if (at.found) {
       size_t parts[2];

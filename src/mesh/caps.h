@@ -30,7 +30,8 @@ typedef struct vxm_caps {
  * A triangle closes a loop of three edges (`plain`: no face has the same three corners), two triangles one of
  * four, and a fan about a new vertex at the centroid a longer one. A loop of more than 64 edges, or one far
  * from flat, is first cut along chords between vertices that are much nearer to each other than along the
- * walk; a bounded number of chords is tried for each cut.
+ * walk; a bounded number of chords is tried for each cut. Any loop is cut at the mouth of a slit, where the
+ * chord is shorter still: it would draw the centroid away from where the loop is flat.
  *
  * @return VXM_OK, VXM_ERROR_RANGE beyond VXM_VERTICES_MAX, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */

@@ -148,7 +148,8 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{separate_until_quiet, true},
+  } further[] = {{vxm_pass_meeting_holes, true},
+                 {separate_until_quiet, true},
                  {vxm_pass_closing, true},
                  {vxm_pass_small_components, true},
                  {vxm_pass_sheets, false},

@@ -2,6 +2,8 @@
 #include "repair/external/cgal.h"
 #include "repair/external/openmesh.h"
 #include "repair/holes/fill_fans.h"
+#include "repair/holes/meeting_rims.h"
+#include "repair/holes/rim_bands.h"
 #include "repair/state/face_subset.h"
 #include "repair/state/vertex_fans.h"
 
@@ -95,11 +97,11 @@ static vxm_status fill_by_module(vxm_repair_state *state, const uint8_t *sheets,
     int64_t added = (int64_t)filled->face_count - (int64_t)rest->face_count;
     for (size_t f = 0; f < filled->face_count; f++)
       origin[f] = origin[f] == VXM_NO_FACE ? VXM_NO_FACE : numbers[origin[f]];
-    *changed = added > 0;
+    *changed |= added > 0;
     state->counts[VXM_PASS_CLOSING] += added;
     if (state->open_parts > 0)
       status = add_sheets(filled, &origin, state, sheets, error);
-    if (status == VXM_OK && *changed) {
+    if (status == VXM_OK && added > 0) {
       status = vxm_repair_state_adopt(state, filled, origin, error);
       filled = NULL;
       origin = NULL;
@@ -125,6 +127,24 @@ static vxm_status fan_the_rest(vxm_repair_state *state, size_t most, bool *chang
   return status;
 }
 
+/** Fills the holes whose rims meet others, which separation would mix up, by fans; before it. */
+vxm_status vxm_pass_meeting_holes(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  *changed = false;
+  size_t most = largest_hole(&state->options);
+  if (most == 0 || !vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD))
+    return VXM_OK;
+  vxm_status status = vxm_repair_state_count_edges(state, error);
+  if (status != VXM_OK || state->edges.odd == 0)
+    return status;
+  int64_t closed;
+  status = vxm_fill_meeting(state, most, &closed, error);
+  *changed = closed > 0;
+  state->filled_holes += closed;
+  if (state->options.hole_fill != VXM_HOLE_FILL_FAN)
+    state->fan_fallbacks += closed;
+  return status;
+}
+
 /** Fills holes as the options say. Components that this would only cover a second time, sheets, stay open. */
 vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
@@ -135,10 +155,17 @@ vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *e
   vxm_status status = vxm_repair_state_count_edges(state, error);
   if (status != VXM_OK || state->edges.odd == 0)
     return status;
+  int64_t closed;
+  status = vxm_fill_bands(state, most, &closed, error);
+  state->filled_holes += closed;
+  *changed = closed > 0;
+  if (status == VXM_OK)
+    status = vxm_repair_state_count_edges(state, error);
+  if (status != VXM_OK || state->edges.odd == 0)
+    return status;
   if (state->options.hole_fill == VXM_HOLE_FILL_FAN) {
-    int64_t closed;
     status = vxm_fill_fans(state, most, &closed, error);
-    *changed = status == VXM_OK && closed > 0;
+    *changed |= closed > 0;
     state->filled_holes += closed;
     return status;
   }

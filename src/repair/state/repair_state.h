@@ -81,7 +81,7 @@ typedef struct vxm_repair_state {
   int64_t sheets;                          /**< open components that became plates, or went */
   int64_t filled_holes;                    /**< holes that were filled */
   int64_t unfilled_holes;                  /**< holes that were to be filled and could not be */
-  int64_t fan_fallbacks;                   /**< holes that a module left to fans */
+  int64_t fan_fallbacks;                   /**< holes that were not a module's, but filled by fans */
   int64_t union_failures; /**< parts that were to be united and still cut through themselves or others */
   int64_t emptied_parts;  /**< closed parts of whose inside unions have taken something away */
   int64_t union_tries;    /**< how often parts were united */
@@ -111,6 +111,7 @@ vxm_status vxm_pass_duplicates(vxm_repair_state *state, bool *changed, vxm_error
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_wrap(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_cut_nonmanifold(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_meeting_holes(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_small_components(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_sheets(vxm_repair_state *state, bool *changed, vxm_error *error);
