@@ -26,7 +26,7 @@ static void find_patches(const vxm_cap_plan *p, uint32_t *patch, double *area) {
   for (size_t f = 0; f < soup->face_count; f++)
     for (uint64_t s = soup->offsets[f]; s < soup->offsets[f + 1]; s++)
       if (sides[s] != VXM_NO_EDGE && p->state->edges.edges[sides[s]].count == 2)
-        vxm_sets_join(patch, (uint32_t)f, (uint32_t)p->edge_face[sides[s]]);
+        vxm_set_unite_in_order(patch, (uint32_t)f, (uint32_t)p->edge_face[sides[s]]);
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
