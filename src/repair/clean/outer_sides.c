@@ -2,13 +2,7 @@
 #include "repair/clean/outer_sides.h"
 
 #include "mesh/geometry.h"
-
-/** A face in its patch. */
-typedef struct link {
-  size_t parent; /**< another face of it, or itself */
-  bool against;  /**< it runs the other way than that */
-  double volume; /**< of the patch, if it stands for it, as it is turned itself */
-} link;
+#include "repair/state/turned_sets.h"
 
 /** An edge, as the faces that count have it. */
 typedef struct meeting {
@@ -22,36 +16,10 @@ typedef struct turning {
   const vxm_soup *soup;
   const uint32_t *sides;
   const uint8_t *counts;
-  link *links;       /**< per face */
-  meeting *meetings; /**< per edge */
+  vxm_turned_link *links; /**< per face */
+  double *volume;         /**< per face that stands for a patch: of that, as the face is turned itself */
+  meeting *meetings;      /**< per edge */
 } turning;
-
-/** The face that stands for a patch, and whether this one runs the other way; shortens the way there. */
-static size_t root_of(link *links, size_t face, bool *against) {
-  size_t root = face;
-  bool turned = false;
-  for (; links[root].parent != root; root = links[root].parent)
-    turned ^= links[root].against;
-  *against = turned;
-  for (size_t at = face; at != root;) {
-    size_t next = links[at].parent;
-    bool own = links[at].against;
-    links[at].parent = root;
-    links[at].against = turned;
-    turned ^= own;
-    at = next;
-  }
-  return root;
-}
-
-static void join(link *links, size_t a, size_t b, bool same_way) {
-  bool turned[2];
-  size_t root = root_of(links, a, &turned[0]), other = root_of(links, b, &turned[1]);
-  if (root == other)
-    return;
-  links[root].parent = other;
-  links[root].against = (turned[0] != turned[1]) != same_way;
-}
 
 typedef void (*side_fn)(turning *t, size_t face, size_t edge, bool forward);
 
@@ -65,7 +33,7 @@ static void meet(turning *t, size_t face, size_t edge, bool forward) {
 static void join_there(turning *t, size_t face, size_t edge, bool forward) {
   const meeting *m = &t->meetings[edge];
   if (m->count == 2 && m->face != face)
-    join(t->links, face, m->face, m->forward == forward);
+    vxm_turned_sets_join(t->links, face, m->face, m->forward == forward);
 }
 
 static vxm_status for_each_side(turning *t, side_fn visit, vxm_error *error) {
@@ -89,14 +57,13 @@ static void add_volumes(turning *t, vxm_unit_scale frame) {
     double cone =
         vxm_polygon_cone(vxm_vec3_between(vxm_position(t->soup, corner[0]), frame.centre, frame.scale),
                          vxm_polygon_area(t->soup->positions, corner, count, frame.scale));
-    size_t root = root_of(t->links, f, &against);
-    t->links[root].volume += against ? -cone : cone;
+    size_t root = vxm_turned_set_of(t->links, f, &against);
+    t->volume[root] += against ? -cone : cone;
   }
 }
 
 static vxm_status find_turns(turning *t, uint8_t *turn, vxm_unit_scale frame, vxm_error *error) {
-  for (size_t f = 0; f < t->soup->face_count; f++)
-    t->links[f].parent = f;
+  vxm_turned_sets_begin(t->links, t->soup->face_count);
   vxm_status status = for_each_side(t, meet, error);
   if (status == VXM_OK)
     status = for_each_side(t, join_there, error);
@@ -105,8 +72,8 @@ static vxm_status find_turns(turning *t, uint8_t *turn, vxm_unit_scale frame, vx
   add_volumes(t, frame);
   for (size_t f = 0; f < t->soup->face_count; f++) {
     bool against;
-    size_t root = root_of(t->links, f, &against);
-    turn[f] = t->counts[f] && (t->links[root].volume < 0) != against;
+    size_t root = vxm_turned_set_of(t->links, f, &against);
+    turn[f] = t->counts[f] && (t->volume[root] < 0) != against;
   }
   return VXM_OK;
 }
@@ -119,10 +86,13 @@ vxm_status vxm_outer_sides_find(uint8_t *turn, vxm_repair_state *state, const ui
   turning t = {.state = state, .soup = state->soup, .sides = sides, .counts = counts};
   t.links = vxm_repair_state_scratch(state, t.soup->face_count, sizeof *t.links, &status, error);
   if (t.links)
+    t.volume = vxm_repair_state_scratch(state, t.soup->face_count, sizeof *t.volume, &status, error);
+  if (t.volume)
     t.meetings = vxm_repair_state_scratch(state, state->edges.count, sizeof *t.meetings, &status, error);
   if (t.meetings)
     status = find_turns(&t, turn, vxm_unit_scale_of(extent.bounds), error);
   vxm_free(state->context, t.meetings);
+  vxm_free(state->context, t.volume);
   vxm_free(state->context, t.links);
   return status;
 }

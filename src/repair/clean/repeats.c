@@ -8,13 +8,40 @@
 
 enum { PEELS_MAX = 16 };
 
+/** Of an area times the length of its way from the middle: what is less tells no side. */
+static const double no_side = 1e-9;
+
+/* ---- Which side ---- */
+
+/** Whether a face looks at the middle of the model; where it does neither that nor look away, by the axis
+ * along which it lies least. */
+static bool looks_inward(const vxm_repeats *d, size_t face) {
+  size_t count;
+  const uint32_t *corner = vxm_face(d->soup, face, &count);
+  vxm_vec3 area = vxm_polygon_area(d->soup->positions, corner, count, d->frame.scale);
+  vxm_vec3 middle = {0, 0, 0}; /* of its corners, whichever is the first */
+  for (size_t i = 0; i < count; i++)
+    middle = vxm_vec3_sum(
+        middle, vxm_vec3_between(vxm_position(d->soup, corner[i]), d->frame.centre, d->frame.scale));
+  double away = vxm_vec3_dot(middle, area), least = no_side * vxm_vec3_length(middle) * vxm_vec3_length(area);
+  if (fabs(away) > least)
+    return away < 0;
+  double x = fabs(area.x), y = fabs(area.y), z = fabs(area.z);
+  return (z >= x && z >= y ? area.z : y >= x ? area.y : area.x) < 0;
+}
+
+bool vxm_repeats_is_turned(const vxm_repeats *d, size_t face) {
+  int64_t surplus = vxm_repeats_surplus(&d->copies[face]);
+  return surplus != 0 ? surplus < 0 : looks_inward(d, face);
+}
+
 /* ---- Fins ---- */
 
 static void look_at_kind(vxm_repeats *d, size_t face) {
   size_t fin_face = vxm_set_of(d->parent, face), count;
   vxm_fin *f = &d->fins[fin_face];
   const uint32_t *corner = vxm_face(d->soup, face, &count);
-  double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->scale));
+  double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->frame.scale));
   if (f->least == 0 || vxm_repeats_kept(d, face) < f->least)
     f->least = vxm_repeats_kept(d, face);
   if (vxm_repeats_kept(d, face) > f->most)
@@ -48,10 +75,13 @@ void vxm_repeats_find_fins(vxm_repeats *d) {
   }
   for (size_t face = 0; face < d->soup->face_count; face++) {
     const vxm_copies *copies = &d->copies[face];
-    bool same_way = d->kinds[face] == VXM_KIND_SAME_WAY, turned = vxm_repeats_surplus(copies) < 0;
+    bool same_way = d->kinds[face] == VXM_KIND_SAME_WAY;
+    if (d->kinds[face] == VXM_KIND_PLAIN)
+      continue;
+    bool turned = vxm_repeats_is_turned(d, face);
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
       size_t edge = d->groups.sides[c], place = 2 * edge + same_way;
-      if (d->kinds[face] == VXM_KIND_PLAIN || edge == VXM_NO_EDGE)
+      if (edge == VXM_NO_EDGE)
         continue;
       d->single[place]++;
       d->sides[place] += copies->same + copies->opposite;
@@ -149,8 +179,7 @@ static bool peel_shared(vxm_repeats *d) {
     uint32_t *keep = &d->keep[2 * face];
     found = true;
     if (shared) {
-      keep[0] = 1;
-      keep[1] = 0;
+      vxm_repeats_keep_one(d, face, looks_inward(d, face));
       d->kinds[face] = VXM_KIND_SHEET;
     } else if (--keep[turned] == 1)
       d->kinds[face] = VXM_KIND_PLAIN;
