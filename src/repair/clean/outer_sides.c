@@ -2,6 +2,7 @@
 #include "repair/clean/outer_sides.h"
 
 #include "mesh/geometry.h"
+#include "repair/clean/face_place.h"
 #include "repair/state/turned_sets.h"
 
 /** An edge, as the faces that count have it. */
@@ -11,13 +12,22 @@ typedef struct meeting {
   uint8_t count; /**< 3 = three or more */
 } meeting;
 
+typedef struct patch {
+  double volume; /**< as the face that stands for it is turned */
+  double sizes;  /**< of its cones, whatever their signs */
+  size_t first;  /**< the face that comes first in space, plus 1 */
+} patch;
+
+/** Of all cones: what is less is no volume. */
+static const double no_volume = 1e-9;
+
 typedef struct turning {
   const vxm_repair_state *state;
   const vxm_soup *soup;
   const uint32_t *sides;
   const uint8_t *counts;
   vxm_turned_link *links; /**< per face */
-  double *volume;         /**< per face that stands for a patch: of that, as the face is turned itself */
+  patch *patches;         /**< per face that stands for one */
   meeting *meetings;      /**< per edge */
 } turning;
 
@@ -57,9 +67,30 @@ static void add_volumes(turning *t, vxm_unit_scale frame) {
     double cone =
         vxm_polygon_cone(vxm_vec3_between(vxm_position(t->soup, corner[0]), frame.centre, frame.scale),
                          vxm_polygon_area(t->soup->positions, corner, count, frame.scale));
-    size_t root = vxm_turned_set_of(t->links, f, &against);
-    t->volume[root] += against ? -cone : cone;
+    patch *p = &t->patches[vxm_turned_set_of(t->links, f, &against)];
+    p->volume += against ? -cone : cone;
+    p->sizes += fabs(cone);
+    if (p->first == 0 || vxm_face_lies_before(t->soup, f, p->first - 1, frame.scale))
+      p->first = f + 1;
   }
+}
+
+/** Whether a face looks down the axis along which it lies least. */
+static bool looks_down(const turning *t, size_t face, double scale) {
+  size_t count;
+  const uint32_t *corner = vxm_face(t->soup, face, &count);
+  vxm_vec3 area = vxm_polygon_area(t->soup->positions, corner, count, scale);
+  double x = fabs(area.x), y = fabs(area.y), z = fabs(area.z);
+  return (z >= x && z >= y ? area.z : y >= x ? area.y : area.x) < 0;
+}
+
+/** Whether the face that stands for a patch runs the wrong way. */
+static bool is_inward(turning *t, const patch *p, double scale) {
+  bool against = false;
+  if (p->first == 0 || fabs(p->volume) > no_volume * p->sizes)
+    return p->volume < 0;
+  vxm_turned_set_of(t->links, p->first - 1, &against);
+  return looks_down(t, p->first - 1, scale) != against;
 }
 
 static vxm_status find_turns(turning *t, uint8_t *turn, vxm_unit_scale frame, vxm_error *error) {
@@ -73,7 +104,7 @@ static vxm_status find_turns(turning *t, uint8_t *turn, vxm_unit_scale frame, vx
   for (size_t f = 0; f < t->soup->face_count; f++) {
     bool against;
     size_t root = vxm_turned_set_of(t->links, f, &against);
-    turn[f] = t->counts[f] && (t->volume[root] < 0) != against;
+    turn[f] = t->counts[f] && is_inward(t, &t->patches[root], frame.scale) != against;
   }
   return VXM_OK;
 }
@@ -86,13 +117,13 @@ vxm_status vxm_outer_sides_find(uint8_t *turn, vxm_repair_state *state, const ui
   turning t = {.state = state, .soup = state->soup, .sides = sides, .counts = counts};
   t.links = vxm_repair_state_scratch(state, t.soup->face_count, sizeof *t.links, &status, error);
   if (t.links)
-    t.volume = vxm_repair_state_scratch(state, t.soup->face_count, sizeof *t.volume, &status, error);
-  if (t.volume)
+    t.patches = vxm_repair_state_scratch(state, t.soup->face_count, sizeof *t.patches, &status, error);
+  if (t.patches)
     t.meetings = vxm_repair_state_scratch(state, state->edges.count, sizeof *t.meetings, &status, error);
   if (t.meetings)
     status = find_turns(&t, turn, vxm_unit_scale_of(extent.bounds), error);
   vxm_free(state->context, t.meetings);
-  vxm_free(state->context, t.volume);
+  vxm_free(state->context, t.patches);
   vxm_free(state->context, t.links);
   return status;
 }

@@ -234,7 +234,20 @@ static vxm_status keep_outer(vxm_repeats *d, uint8_t *counts, uint8_t *turn, vxm
 
 /* ---- All of it ---- */
 
+/** Of what is there as often either way, which side looks outward; `counts` is scratch per face. */
+static vxm_status find_turned(vxm_repeats *d, uint8_t *counts, vxm_error *error) {
+  bool any = false;
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    counts[face] = vxm_repeats_is_first(d, face) && vxm_repeats_surplus(&d->copies[face]) == 0;
+    any |= counts[face];
+  }
+  return any ? vxm_outer_sides_find(d->turned, d->state, d->groups.sides, counts, error) : VXM_OK;
+}
+
 static vxm_status decide(vxm_repeats *d, int8_t *tally, uint8_t *within, uint8_t *remove, vxm_error *error) {
+  vxm_status status = find_turned(d, remove, error);
+  if (status != VXM_OK)
+    return status;
   for (size_t face = 0; face < d->soup->face_count; face++)
     if (vxm_repeats_is_first(d, face))
       begin_kind(d, face);
@@ -242,7 +255,7 @@ static vxm_status decide(vxm_repeats *d, int8_t *tally, uint8_t *within, uint8_t
   vxm_repeats_peel(d);
   sum_areas(d);
   look_at_sides(d, tally);
-  vxm_status status = find_within(d, within, error);
+  status = find_within(d, within, error);
   if (status != VXM_OK)
     return status;
   settle(d, within);
@@ -261,6 +274,8 @@ static vxm_status prepare(vxm_repeats *d, int8_t **tally, uint8_t **within, vxm_
   vxm_status status = vxm_edge_groups_find(&d->groups, state, error);
   if (status == VXM_OK)
     d->kinds = vxm_repair_state_scratch(state, faces, sizeof *d->kinds, &status, error);
+  if (status == VXM_OK)
+    d->turned = vxm_repair_state_scratch(state, faces, sizeof *d->turned, &status, error);
   if (status == VXM_OK)
     d->keep = vxm_repair_state_scratch(state, 2 * faces, sizeof *d->keep, &status, error);
   if (status == VXM_OK)
@@ -311,6 +326,7 @@ vxm_status vxm_repeated_faces_mark(vxm_repair_state *state, const vxm_copies *co
   vxm_free(state->context, d.fins);
   vxm_free(state->context, d.parent);
   vxm_free(state->context, d.keep);
+  vxm_free(state->context, d.turned);
   vxm_free(state->context, d.kinds);
   vxm_edge_groups_destroy(&d.groups, state->context);
   return status;

@@ -8,31 +8,9 @@
 
 enum { PEELS_MAX = 16 };
 
-/** Of an area times the length of its way from the middle: what is less tells no side. */
-static const double no_side = 1e-9;
-
-/* ---- Which side ---- */
-
-/** Whether a face looks at the middle of the model; where it does neither that nor look away, by the axis
- * along which it lies least. */
-static bool looks_inward(const vxm_repeats *d, size_t face) {
-  size_t count;
-  const uint32_t *corner = vxm_face(d->soup, face, &count);
-  vxm_vec3 area = vxm_polygon_area(d->soup->positions, corner, count, d->frame.scale);
-  vxm_vec3 middle = {0, 0, 0}; /* of its corners, whichever is the first */
-  for (size_t i = 0; i < count; i++)
-    middle = vxm_vec3_sum(
-        middle, vxm_vec3_between(vxm_position(d->soup, corner[i]), d->frame.centre, d->frame.scale));
-  double away = vxm_vec3_dot(middle, area), least = no_side * vxm_vec3_length(middle) * vxm_vec3_length(area);
-  if (fabs(away) > least)
-    return away < 0;
-  double x = fabs(area.x), y = fabs(area.y), z = fabs(area.z);
-  return (z >= x && z >= y ? area.z : y >= x ? area.y : area.x) < 0;
-}
-
 bool vxm_repeats_is_turned(const vxm_repeats *d, size_t face) {
   int64_t surplus = vxm_repeats_surplus(&d->copies[face]);
-  return surplus != 0 ? surplus < 0 : looks_inward(d, face);
+  return surplus != 0 ? surplus < 0 : d->turned[face];
 }
 
 /* ---- Fins ---- */
@@ -179,7 +157,7 @@ static bool peel_shared(vxm_repeats *d) {
     uint32_t *keep = &d->keep[2 * face];
     found = true;
     if (shared) {
-      vxm_repeats_keep_one(d, face, looks_inward(d, face));
+      vxm_repeats_keep_one(d, face, vxm_repeats_is_turned(d, face));
       d->kinds[face] = VXM_KIND_SHEET;
     } else if (--keep[turned] == 1)
       d->kinds[face] = VXM_KIND_PLAIN;

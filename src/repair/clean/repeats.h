@@ -37,6 +37,7 @@ typedef struct vxm_repeats {
   vxm_edge_groups groups;
   vxm_unit_scale frame;
   uint8_t *kinds;   /**< per face: of the first of its kind */
+  uint8_t *turned;  /**< per first face that is there as often either way: 1 = the other side stays */
   uint32_t *keep;   /**< per first face: how many copies stay of its orientation, and of the other */
   size_t *parent;   /**< per first face: another one of its fin, or itself */
   vxm_fin *fins;    /**< per face that stands for one */
@@ -62,7 +63,7 @@ static inline uint32_t vxm_repeats_kept(const vxm_repeats *d, size_t face) {
 
 /** Of a first face: whether one copy that stays is to run the other way than it. Most copies tell; where
  * there are as many of one orientation as of the other the side that looks away from the middle of the model
- * does, whichever of them comes first in the file. */
+ * does, for all that hang together alike, whichever of them comes first in the file. */
 bool vxm_repeats_is_turned(const vxm_repeats *d, size_t face);
 
 /** Keeps one copy. */
