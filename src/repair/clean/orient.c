@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
-#include "repair/clean/face_place.h"
 #include "repair/clean/spanning_turns.h"
 #include "repair/state/repair_state.h"
 
@@ -203,31 +202,6 @@ static bool settle_conflicts(orienting *o) {
   return done;
 }
 
-/** Whether as much of a patch would be turned as not, but for rounding. */
-static bool is_undecided(const patch *p) {
-  return p->turned_area > 0 && fabs(2 * p->turned_area - p->area) <= 1e-9 * p->area;
-}
-
-/** Of such patches the face that comes first in space stays as it is. */
-static bool decide_ties(orienting *o) {
-  bool any = false;
-  for (size_t i = 0; i < o->patch_count; i++)
-    any |= is_undecided(&o->patches[i]);
-  size_t *first = any ? allocate(o, o->patch_count, sizeof *first) : NULL; /* numbers plus 1 */
-  for (size_t f = 0; first && f < o->soup->face_count && goes_on(o, f); f++) {
-    size_t *of_patch = &first[o->label[f]];
-    if (!is_undecided(&o->patches[o->label[f]]) || o->soup->offsets[f] == o->soup->offsets[f + 1])
-      continue;
-    if (*of_patch == 0 || vxm_face_lies_before(o->soup, f, *of_patch - 1, o->frame.scale))
-      *of_patch = f + 1;
-  }
-  for (size_t i = 0; first && i < o->patch_count; i++)
-    if (first[i] > 0)
-      o->patches[i].turned_area = o->turn[first[i] - 1] ? o->patches[i].area : 0;
-  vxm_free(o->state->context, first);
-  return o->error.code == VXM_OK;
-}
-
 /** Makes patches consistent, with most of their area as it was; without a gain they stay as they are. */
 static bool make_consistent(orienting *o) {
   if (!settle_conflicts(o))
@@ -238,9 +212,7 @@ static bool make_consistent(orienting *o) {
     p->area += area;
     p->turned_area += o->turn[f] ? area : 0;
   }
-  if (o->error.code != VXM_OK || !decide_ties(o))
-    return false;
-  for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
+  for (size_t f = 0; f < o->soup->face_count && o->error.code == VXM_OK && goes_on(o, f); f++) {
     patch *p = &o->patches[o->label[f]];
     if (p->inconsistent <= p->conflicts)
       o->turn[f] = 0;
@@ -479,8 +451,7 @@ static bool note_turned(orienting *o, bool *changed) {
  * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
  * about an edge stay as they are, and sheets keep the side that most of their area has; both are turned where
  * the model as a whole came inside out. A patch that no turning makes consistent gets as few inconsistent
- * edges as a longest spanning tree leaves (spanning_turns.h). Nothing hangs on how faces and vertices are
- * numbered.
+ * edges as a longest spanning tree leaves (spanning_turns.h).
  */
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;

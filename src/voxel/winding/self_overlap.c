@@ -313,7 +313,7 @@ static vxm_status look_at_part(vxm_self_overlap *out, finder *f, size_t part) {
   if (begin == end)
     return VXM_OK;
   points range = points_of(f->triangles, part);
-  int even = (int)fmin(sqrt((double)(end - begin)) / 4 + 2, VXM_PROBE_EVEN) / 2 * 2;
+  int even = (int)fmin(sqrt((double)(end - begin)) / 4 + 4, VXM_PROBE_EVEN) / 2 * 2;
   vxm_status status = VXM_OK;
   do {
     if (!lay_lines(f, range, even))
