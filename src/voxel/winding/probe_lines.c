@@ -116,7 +116,7 @@ bool vxm_probe_lines_lay(int *along, vxm_probe_places places[3], vxm_probe_cell 
   for (int a = 0; a < 2; a++) {
     chosen_places chosen = {false};
     choose_even(chosen, laid[a]->cells, even);
-    choose_by_points(chosen, in_cell[a], laid[a]->cells, counted, even);
+    choose_by_points(chosen, in_cell[a], laid[a]->cells, counted, even < VXM_PROBE_EVEN ? even - 2 : even);
     place(laid[a], chosen);
   }
   for (size_t i = 0; i < count; i++)

@@ -179,7 +179,7 @@ static vxm_status sort_by_line(finder *f) {
                                 sizeof *f->sorted, &f->error);
   if (status != VXM_OK)
     return status;
-  memset(f->ends, 0, sizeof f->ends);
+  memset(f->ends, 0, (line_count + 1) * sizeof *f->ends);
   for (size_t i = 0; i < f->count; i++)
     f->ends[f->crossings[i].line + 1]++;
   for (size_t line = 0; line < line_count; line++)
@@ -233,17 +233,17 @@ static void follow(finder *f, const crossing *at, size_t count, double weight) {
 }
 
 static void follow_all(finder *f) {
-  size_t line_count = f->line_count, begin = 0;
   const vxm_probe_places *columns = &f->places[(f->along + 1) % 3], *rows = &f->places[(f->along + 2) % 3];
+  size_t line = 0, begin = 0;
   f->contradicted = false;
   f->length = f->inside = f->twice_out = f->twice_in = 0;
-  for (size_t line = 0; line < line_count; line++) {
-    size_t count = f->ends[line] - begin;
-    sort_along(f->sorted + begin, count);
-    follow(f, f->sorted + begin, count,
-           columns->width[line % (size_t)columns->count] * rows->width[line / (size_t)columns->count]);
-    begin = f->ends[line];
-  }
+  for (int row = 0; row < rows->count; row++)
+    for (int column = 0; column < columns->count; column++, line++) {
+      size_t count = f->ends[line] - begin;
+      sort_along(f->sorted + begin, count);
+      follow(f, f->sorted + begin, count, columns->width[column] * rows->width[row]);
+      begin = f->ends[line];
+    }
 }
 
 static double twice_of(const finder *f) {
