@@ -231,6 +231,7 @@ typedef struct candidate {
   int faults;
   double cosine; /**< of the angle between the edges, in steps of NEAR_ANGLE */
   double rest;   /**< the same of the two other edges, of four */
+  bool against;  /**< the faces do not run along both edges one way */
   uint32_t p, q; /**< places among the ends of the vertex, p < q */
 } candidate;
 
@@ -270,6 +271,8 @@ static int better_first(const void *a, const void *b) {
     return p->cosine > q->cosine ? -1 : 1;
   if (p->rest != q->rest)
     return p->rest < q->rest ? -1 : 1;
+  if (p->against != q->against)
+    return p->against ? 1 : -1;
   if (p->p != q->p)
     return p->p < q->p ? -1 : 1;
   return p->q < q->q ? -1 : p->q > q->q;
@@ -298,10 +301,13 @@ static void add_candidate(const builder *b, joining *j, uint32_t p, uint32_t q) 
   double cosine = vxm_vec3_dot(u, v) / (vxm_vec3_length(u) * vxm_vec3_length(v));
   if (!(cosine >= -1 && cosine <= 1)) /* also where lengths overflow or vanish */
     cosine = cosine > 1 ? 1 : -1;
-  bool turns = cosine < ALONG && leaves(b, j->ends[p]) == leaves(b, j->ends[q]);
-  int faults = (turns ? TURNS : 0) + (j->fans[p] == j->fans[q] ? OWN_FAN : 0);
-  j->candidates[j->candidate_count++] = (candidate){
-      .faults = faults, .cosine = rint(cosine / NEAR_ANGLE), .p = p < q ? p : q, .q = p < q ? q : p};
+  bool against = leaves(b, j->ends[p]) == leaves(b, j->ends[q]);
+  int faults = (against && cosine < ALONG ? TURNS : 0) + (j->fans[p] == j->fans[q] ? OWN_FAN : 0);
+  j->candidates[j->candidate_count++] = (candidate){.faults = faults,
+                                                    .cosine = rint(cosine / NEAR_ANGLE),
+                                                    .against = against,
+                                                    .p = p < q ? p : q,
+                                                    .q = p < q ? q : p};
 }
 
 static void add_all_candidates(const builder *b, joining *j) {

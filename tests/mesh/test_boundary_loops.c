@@ -201,6 +201,32 @@ static void rims_run_one_way(void **state) {
   vxm_context_destroy(context);
 }
 
+/** Two triangles that share a corner, with three edges along each other there: of two pairs that go together
+ * as well that is joined along which the faces run one way, however the model is turned. */
+static void faces_decide_about_edges_along_each_other(void **state) {
+  (void)state;
+  vxm_context *context = context_of_threads(1);
+  for (int mirrored = 0; mirrored < 8; mirrored++) {
+    vxm_soup *soup = new_soup(context);
+    static const double corners[][3] = {
+        {0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}, {1, 2e-6, 1e-6}, {1, -2e-6, 1e-6}};
+    for (int v = 0; v < 5; v++) {
+      double p[3];
+      for (int a = 0; a < 3; a++)
+        p[a] = mirrored >> a & 1 ? -corners[v][a] : corners[v][a];
+      add_vertex(soup, p[0], p[1], p[2]);
+    }
+    add_face(soup, (uint32_t[]){0, 1, 2}, 3);
+    add_face(soup, (uint32_t[]){0, 3, 4}, 3);
+    found f = find_loops(soup);
+    for (size_t l = 0; l < f.loops.count; l++)
+      assert_true(runs_one_way(&f, l));
+    found_free(&f);
+    vxm_soup_destroy(soup);
+  }
+  vxm_context_destroy(context);
+}
+
 static void random_soups(void **state) {
   (void)state;
   vxm_context *context = context_of_threads(1);
@@ -333,7 +359,7 @@ int main(void) {
       cmocka_unit_test(slits_along_panels),     cmocka_unit_test(holes_that_touch),
       cmocka_unit_test(rims_run_one_way),       cmocka_unit_test(random_soups),
       cmocka_unit_test(fans_of_many_edges),     cmocka_unit_test(real_meshes),
-      cmocka_unit_test(memory_may_run_out),
+      cmocka_unit_test(memory_may_run_out),     cmocka_unit_test(faces_decide_about_edges_along_each_other),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 
 #include "../mesh/shared.h"
 
+#include "base/hash.h"
 #include "mesh/edges.h"
 
 #include <math.h>
@@ -197,6 +198,90 @@ static void moebius_bands_are_reported(void **state) {
       assert_int_equal(count_of(&report, "orientation"), 0);
     vxm_soup_destroy(out);
     flip_some(soup, 0.4, (uint64_t)round);
+  }
+  vxm_soup_destroy(soup);
+}
+
+/** Puts the faces of a soup of equal faces into a random order. */
+static void shuffle_faces(vxm_soup *soup, size_t corners, vxm_rng *rng) {
+  for (size_t f = soup->face_count - 1; f > 0; f--)
+    for (size_t k = 0, g = vxm_rng_below(rng, f + 1); k < corners; k++) {
+      uint32_t kept = soup->indices[corners * f + k];
+      soup->indices[corners * f + k] = soup->indices[corners * g + k];
+      soup->indices[corners * g + k] = kept;
+    }
+}
+
+/** The same whatever the order of faces, but not if one is turned. */
+static uint64_t sum_of_sides(const vxm_soup *soup) {
+  uint64_t sum = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
+    for (size_t i = 0; i < count; i++)
+      sum += vxm_mix((uint64_t)corner[i] << 32 | corner[(i + 1) % count]);
+  }
+  return sum;
+}
+
+/** A bent band on a wall that runs along its middle, drawn from both sides: which of two faces stays, and
+ * which way patches face that have no side, hangs on where they lie. */
+static void numbers_decide_nothing(void **state) {
+  enum { N = 8 };
+  vxm_rng rng = {31};
+  vxm_soup *soup = new_soup(*state);
+  for (int i = 0; i <= N; i++)
+    for (int k = 0; k < 4; k++)
+      add_vertex(soup, i, k < 3 ? k : 1, k < 3 ? 0.1 * i * k : -2);
+  for (uint32_t i = 0; i < N; i++)
+    for (uint32_t k = 0; k < 3; k++) {
+      uint32_t p = 4 * i + (k < 2 ? k : 1), q = 4 * i + (k < 2 ? k + 1 : 3);
+      add_face(soup, (uint32_t[]){p, q, q + 4, p + 4}, 4);
+      add_face(soup, (uint32_t[]){p + 4, q + 4, q, p}, 4);
+    }
+  uint64_t expected = 0;
+  for (int round = 0; round < 20; round++) {
+    vxm_soup *out = repaired(soup, NULL, NULL);
+    assert_int_equal(out->face_count, 3 * N);
+    if (round == 0)
+      expected = sum_of_sides(out);
+    assert_int_equal(sum_of_sides(out), expected);
+    vxm_soup_destroy(out);
+    shuffle_faces(soup, 4, &rng);
+  }
+  vxm_soup_destroy(soup);
+}
+
+/** A net on a Moebius band, of edges of many lengths: where it stays inconsistent does not hang on the face
+ * with which a walk begins. */
+static void moebius_nets_are_cut_alike(void **state) {
+  enum { N = 20, ROWS = 3 };
+  vxm_rng rng = {32};
+  vxm_soup *soup = new_soup(*state);
+  for (int i = 0; i < N; i++)
+    for (int k = 0; k <= ROWS; k++) {
+      double u = 2 * M_PI * i / N, w = 0.2 * (2 * k - ROWS) + 0.1 * vxm_rng_unit(&rng);
+      add_vertex(soup, (2 + w * cos(u / 2)) * cos(u), (2 + w * cos(u / 2)) * sin(u), w * sin(u / 2));
+    }
+  for (uint32_t i = 0; i < N; i++)
+    for (uint32_t k = 0; k < ROWS; k++) {
+      uint32_t j = (i + 1) % N, first = (ROWS + 1) * i + k, other = (ROWS + 1) * j;
+      bool swap = j == 0;
+      add_face(soup,
+               (uint32_t[]){first, first + 1, other + (swap ? ROWS - k - 1 : k + 1),
+                            other + (swap ? ROWS - k : k)},
+               4);
+    }
+  uint64_t expected = 0;
+  for (size_t f = 0; f < soup->face_count / 3; f++)
+    reverse_face(soup, f);
+  for (int round = 0; round < 20; round++) {
+    vxm_soup *out = repaired(soup, NULL, NULL);
+    if (round == 0)
+      expected = sum_of_sides(out);
+    assert_int_equal(sum_of_sides(out), expected);
+    vxm_soup_destroy(out);
+    shuffle_faces(soup, 4, &rng);
   }
   vxm_soup_destroy(soup);
 }
@@ -477,6 +562,8 @@ int main(void) {
       cmocka_unit_test(boxes_that_share_an_edge),
       cmocka_unit_test(sheets_keep_their_side),
       cmocka_unit_test(moebius_bands_are_reported),
+      cmocka_unit_test(numbers_decide_nothing),
+      cmocka_unit_test(moebius_nets_are_cut_alike),
       cmocka_unit_test(small_random_soups),
       cmocka_unit_test(balance_is_kept),
       cmocka_unit_test(real_meshes),

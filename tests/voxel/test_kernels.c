@@ -315,7 +315,7 @@ static void abstain_one(bool voter[3], const bool odd[3]) {
   }
   if (left == 3)
     return;
-  const bool inside = votes == 3, some = votes > 0 || left < 2, most = votes >= 2 || (left < 2 && votes > 0);
+  const bool inside = votes == 3, some = votes > 0 || left < 2, most = votes >= 2;
   voter[0] = some;
   voter[1] = inside;
   voter[2] = most;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
+#include "repair/clean/spanning_turns.h"
 #include "repair/state/repair_state.h"
 
 #include <math.h>
@@ -169,8 +170,42 @@ static bool measure_patches(orienting *o) {
   return o->error.code == VXM_OK;
 }
 
+/** Counts the sides along edges that turning as it is now leaves inconsistent, of the patches chosen. */
+static void count_conflicts(orienting *o, const uint8_t *chosen) {
+  for (size_t i = 0; i < o->patch_count; i++)
+    o->patches[i].conflicts = chosen[i] ? 0 : o->patches[i].conflicts;
+  for (size_t e = 0; e < o->state->edges.count; e++) {
+    const vxm_edge *edge = &o->state->edges.edges[e];
+    const size_t *pair = o->pair[e];
+    if (edge->count != 2 || pair[1] == SIZE_MAX || !chosen[o->label[pair[0]]])
+      continue;
+    bool against = edge->forward != 1;
+    o->patches[o->label[pair[0]]].conflicts += 2 * ((o->turn[pair[0]] ^ o->turn[pair[1]]) != against);
+  }
+}
+
+/** Turns what no turning makes consistent so that it does not hang on the face with which the walk began. */
+static bool settle_conflicts(orienting *o) {
+  bool any = false;
+  uint8_t *chosen = allocate(o, o->patch_count, sizeof *chosen);
+  for (size_t i = 0; chosen && i < o->patch_count; i++) {
+    chosen[i] = o->patches[i].conflicts > 0;
+    any |= chosen[i];
+  }
+  vxm_joined_faces joined = {o->label, (const size_t(*)[2])o->pair, chosen};
+  bool done = chosen != NULL;
+  if (any)
+    done = vxm_spanning_turns_find(o->turn, o->state, &joined, &o->error) == VXM_OK;
+  if (any && done)
+    count_conflicts(o, chosen);
+  vxm_free(o->state->context, chosen);
+  return done;
+}
+
 /** Makes patches consistent, with most of their area as it was; without a gain they stay as they are. */
 static bool make_consistent(orienting *o) {
+  if (!settle_conflicts(o))
+    return false;
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
     patch *p = &o->patches[o->label[f]];
     double area = vxm_vec3_length(area_of(o, f));
@@ -416,7 +451,7 @@ static bool note_turned(orienting *o, bool *changed) {
  * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
  * about an edge stay as they are, and sheets keep the side that most of their area has; both are turned where
  * the model as a whole came inside out. A patch that no turning makes consistent gets as few inconsistent
- * edges as a walk over its faces leaves.
+ * edges as a longest spanning tree leaves (spanning_turns.h).
  */
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;

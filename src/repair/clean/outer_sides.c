@@ -2,13 +2,8 @@
 #include "repair/clean/outer_sides.h"
 
 #include "mesh/geometry.h"
-
-/** A face in its patch. */
-typedef struct link {
-  size_t parent; /**< another face of it, or itself */
-  bool against;  /**< it runs the other way than that */
-  double volume; /**< of the patch, if it stands for it, as it is turned itself */
-} link;
+#include "repair/clean/face_place.h"
+#include "repair/state/turned_sets.h"
 
 /** An edge, as the faces that count have it. */
 typedef struct meeting {
@@ -17,41 +12,24 @@ typedef struct meeting {
   uint8_t count; /**< 3 = three or more */
 } meeting;
 
+typedef struct patch {
+  double volume; /**< as the face that stands for it is turned */
+  double sizes;  /**< of its cones, whatever their signs */
+  size_t first;  /**< the face that comes first in space, plus 1 */
+} patch;
+
+/** Of all cones: what is less is no volume. */
+static const double no_volume = 1e-9;
+
 typedef struct turning {
   const vxm_repair_state *state;
   const vxm_soup *soup;
   const uint32_t *sides;
   const uint8_t *counts;
-  link *links;       /**< per face */
-  meeting *meetings; /**< per edge */
+  vxm_turned_link *links; /**< per face */
+  patch *patches;         /**< per face that stands for one */
+  meeting *meetings;      /**< per edge */
 } turning;
-
-/** The face that stands for a patch, and whether this one runs the other way; shortens the way there. */
-static size_t root_of(link *links, size_t face, bool *against) {
-  size_t root = face;
-  bool turned = false;
-  for (; links[root].parent != root; root = links[root].parent)
-    turned ^= links[root].against;
-  *against = turned;
-  for (size_t at = face; at != root;) {
-    size_t next = links[at].parent;
-    bool own = links[at].against;
-    links[at].parent = root;
-    links[at].against = turned;
-    turned ^= own;
-    at = next;
-  }
-  return root;
-}
-
-static void join(link *links, size_t a, size_t b, bool same_way) {
-  bool turned[2];
-  size_t root = root_of(links, a, &turned[0]), other = root_of(links, b, &turned[1]);
-  if (root == other)
-    return;
-  links[root].parent = other;
-  links[root].against = (turned[0] != turned[1]) != same_way;
-}
 
 typedef void (*side_fn)(turning *t, size_t face, size_t edge, bool forward);
 
@@ -65,7 +43,7 @@ static void meet(turning *t, size_t face, size_t edge, bool forward) {
 static void join_there(turning *t, size_t face, size_t edge, bool forward) {
   const meeting *m = &t->meetings[edge];
   if (m->count == 2 && m->face != face)
-    join(t->links, face, m->face, m->forward == forward);
+    vxm_turned_sets_join(t->links, face, m->face, m->forward == forward);
 }
 
 static vxm_status for_each_side(turning *t, side_fn visit, vxm_error *error) {
@@ -89,14 +67,34 @@ static void add_volumes(turning *t, vxm_unit_scale frame) {
     double cone =
         vxm_polygon_cone(vxm_vec3_between(vxm_position(t->soup, corner[0]), frame.centre, frame.scale),
                          vxm_polygon_area(t->soup->positions, corner, count, frame.scale));
-    size_t root = root_of(t->links, f, &against);
-    t->links[root].volume += against ? -cone : cone;
+    patch *p = &t->patches[vxm_turned_set_of(t->links, f, &against)];
+    p->volume += against ? -cone : cone;
+    p->sizes += fabs(cone);
+    if (p->first == 0 || vxm_face_lies_before(t->soup, f, p->first - 1, frame.scale))
+      p->first = f + 1;
   }
 }
 
+/** Whether a face looks down the axis along which it lies least. */
+static bool looks_down(const turning *t, size_t face, double scale) {
+  size_t count;
+  const uint32_t *corner = vxm_face(t->soup, face, &count);
+  vxm_vec3 area = vxm_polygon_area(t->soup->positions, corner, count, scale);
+  double x = fabs(area.x), y = fabs(area.y), z = fabs(area.z);
+  return (z >= x && z >= y ? area.z : y >= x ? area.y : area.x) < 0;
+}
+
+/** Whether the face that stands for a patch runs the wrong way. */
+static bool is_inward(turning *t, const patch *p, double scale) {
+  bool against = false;
+  if (p->first == 0 || fabs(p->volume) > no_volume * p->sizes)
+    return p->volume < 0;
+  vxm_turned_set_of(t->links, p->first - 1, &against);
+  return looks_down(t, p->first - 1, scale) != against;
+}
+
 static vxm_status find_turns(turning *t, uint8_t *turn, vxm_unit_scale frame, vxm_error *error) {
-  for (size_t f = 0; f < t->soup->face_count; f++)
-    t->links[f].parent = f;
+  vxm_turned_sets_begin(t->links, t->soup->face_count);
   vxm_status status = for_each_side(t, meet, error);
   if (status == VXM_OK)
     status = for_each_side(t, join_there, error);
@@ -105,8 +103,8 @@ static vxm_status find_turns(turning *t, uint8_t *turn, vxm_unit_scale frame, vx
   add_volumes(t, frame);
   for (size_t f = 0; f < t->soup->face_count; f++) {
     bool against;
-    size_t root = root_of(t->links, f, &against);
-    turn[f] = t->counts[f] && (t->links[root].volume < 0) != against;
+    size_t root = vxm_turned_set_of(t->links, f, &against);
+    turn[f] = t->counts[f] && is_inward(t, &t->patches[root], frame.scale) != against;
   }
   return VXM_OK;
 }
@@ -119,10 +117,13 @@ vxm_status vxm_outer_sides_find(uint8_t *turn, vxm_repair_state *state, const ui
   turning t = {.state = state, .soup = state->soup, .sides = sides, .counts = counts};
   t.links = vxm_repair_state_scratch(state, t.soup->face_count, sizeof *t.links, &status, error);
   if (t.links)
+    t.patches = vxm_repair_state_scratch(state, t.soup->face_count, sizeof *t.patches, &status, error);
+  if (t.patches)
     t.meetings = vxm_repair_state_scratch(state, state->edges.count, sizeof *t.meetings, &status, error);
   if (t.meetings)
     status = find_turns(&t, turn, vxm_unit_scale_of(extent.bounds), error);
   vxm_free(state->context, t.meetings);
+  vxm_free(state->context, t.patches);
   vxm_free(state->context, t.links);
   return status;
 }

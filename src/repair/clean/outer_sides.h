@@ -7,7 +7,8 @@
 
 /**
  * Joins faces over the edges where two of them meet, and turns what hangs together like one of them, such
- * that it has no negative volume.
+ * that it has no negative volume about the middle of the model. What has none at all is turned by its first
+ * face in space.
  *
  * @param sides     per corner: its edge, of the state's edge map
  * @param counts    per face: whether it takes part; the others are not there

@@ -18,8 +18,7 @@ static void begin_kind(vxm_repeats *d, size_t face) {
   const vxm_copies *c = &d->copies[face];
   const vxm_edge_group *group = &d->groups.groups[d->groups.of_face[face]];
   int64_t surplus = vxm_repeats_surplus(c);
-  d->keep[2 * face] = 1;
-  d->keep[2 * face + 1] = 0;
+  vxm_repeats_keep_one(d, face, vxm_repeats_is_turned(d, face));
   if (group->balanced && surplus != 0) {
     d->keep[2 * face] = surplus > 0 ? (uint32_t)surplus : 0;
     d->keep[2 * face + 1] = surplus < 0 ? (uint32_t)-surplus : 0;
@@ -37,7 +36,7 @@ static void sum_areas(vxm_repeats *d) {
       continue;
     size_t count, group = d->groups.of_face[face];
     const uint32_t *corner = vxm_face(d->soup, face, &count);
-    double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->scale));
+    double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->frame.scale));
     if (d->kinds[face] == VXM_KIND_PLAIN)
       d->rest_area[group] += area;
     else
@@ -52,11 +51,11 @@ static void sum_areas(vxm_repeats *d) {
 static int side_of(const vxm_repeats *d, size_t face, size_t other) {
   size_t count;
   const uint32_t *corner = vxm_face(d->soup, face, &count);
-  vxm_vec3 normal = vxm_polygon_area(d->soup->positions, corner, count, d->scale), sum = {0, 0, 0};
+  vxm_vec3 normal = vxm_polygon_area(d->soup->positions, corner, count, d->frame.scale), sum = {0, 0, 0};
   const double *origin = vxm_position(d->soup, corner[0]);
   corner = vxm_face(d->soup, other, &count);
   for (size_t c = 0; c < count; c++) {
-    vxm_vec3 to = vxm_vec3_between(vxm_position(d->soup, corner[c]), origin, d->scale);
+    vxm_vec3 to = vxm_vec3_between(vxm_position(d->soup, corner[c]), origin, d->frame.scale);
     sum = vxm_vec3_sum(sum, to);
   }
   double above = vxm_vec3_dot(normal, sum), none = 1e-9 * vxm_vec3_length(normal) * vxm_vec3_length(sum);
@@ -221,23 +220,34 @@ static vxm_status keep_outer(vxm_repeats *d, uint8_t *counts, uint8_t *turn, vxm
   bool any = false;
   for (size_t face = 0; face < d->soup->face_count; face++) {
     counts[face] = may_be_body(d, face) && !d->fins[vxm_set_of(d->parent, face)].rimmed &&
-                   d->keep[2 * face] == 1 && d->keep[2 * face + 1] == 0;
+                   vxm_repeats_kept(d, face) == 1;
     any |= counts[face];
   }
   if (!any || d->groups.count < 2) /* alone it is turned outward later */
     return VXM_OK;
   vxm_status status = vxm_outer_sides_find(turn, d->state, d->groups.sides, counts, error);
   for (size_t face = 0; status == VXM_OK && face < d->soup->face_count; face++)
-    if (turn[face]) {
-      d->keep[2 * face] = 0;
-      d->keep[2 * face + 1] = 1;
-    }
+    if (counts[face])
+      vxm_repeats_keep_one(d, face, turn[face]);
   return status;
 }
 
 /* ---- All of it ---- */
 
+/** Of what is there as often either way, which side looks outward; `counts` is scratch per face. */
+static vxm_status find_turned(vxm_repeats *d, uint8_t *counts, vxm_error *error) {
+  bool any = false;
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    counts[face] = vxm_repeats_is_first(d, face) && vxm_repeats_surplus(&d->copies[face]) == 0;
+    any |= counts[face];
+  }
+  return any ? vxm_outer_sides_find(d->turned, d->state, d->groups.sides, counts, error) : VXM_OK;
+}
+
 static vxm_status decide(vxm_repeats *d, int8_t *tally, uint8_t *within, uint8_t *remove, vxm_error *error) {
+  vxm_status status = find_turned(d, remove, error);
+  if (status != VXM_OK)
+    return status;
   for (size_t face = 0; face < d->soup->face_count; face++)
     if (vxm_repeats_is_first(d, face))
       begin_kind(d, face);
@@ -245,7 +255,7 @@ static vxm_status decide(vxm_repeats *d, int8_t *tally, uint8_t *within, uint8_t
   vxm_repeats_peel(d);
   sum_areas(d);
   look_at_sides(d, tally);
-  vxm_status status = find_within(d, within, error);
+  status = find_within(d, within, error);
   if (status != VXM_OK)
     return status;
   settle(d, within);
@@ -264,6 +274,8 @@ static vxm_status prepare(vxm_repeats *d, int8_t **tally, uint8_t **within, vxm_
   vxm_status status = vxm_edge_groups_find(&d->groups, state, error);
   if (status == VXM_OK)
     d->kinds = vxm_repair_state_scratch(state, faces, sizeof *d->kinds, &status, error);
+  if (status == VXM_OK)
+    d->turned = vxm_repair_state_scratch(state, faces, sizeof *d->turned, &status, error);
   if (status == VXM_OK)
     d->keep = vxm_repair_state_scratch(state, 2 * faces, sizeof *d->keep, &status, error);
   if (status == VXM_OK)
@@ -296,7 +308,7 @@ vxm_status vxm_repeated_faces_mark(vxm_repair_state *state, const vxm_copies *co
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
   vxm_repeats d = {
-      .state = state, .soup = state->soup, .copies = copies, .scale = vxm_unit_scale_of(extent.bounds).scale};
+      .state = state, .soup = state->soup, .copies = copies, .frame = vxm_unit_scale_of(extent.bounds)};
   int8_t *tally = NULL;
   uint8_t *within = NULL;
   vxm_status status = prepare(&d, &tally, &within, error);
@@ -314,6 +326,7 @@ vxm_status vxm_repeated_faces_mark(vxm_repair_state *state, const vxm_copies *co
   vxm_free(state->context, d.fins);
   vxm_free(state->context, d.parent);
   vxm_free(state->context, d.keep);
+  vxm_free(state->context, d.turned);
   vxm_free(state->context, d.kinds);
   vxm_edge_groups_destroy(&d.groups, state->context);
   return status;

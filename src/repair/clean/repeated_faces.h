@@ -10,7 +10,8 @@
  * Marks the faces that may go without the loss of a body, and without opening what is closed.
  *
  * A group is a set of faces that edges connect (repair/state/edge_groups.h). In an open group one of several
- * faces that repeat each other stays: a sheet that was drawn from both sides is one sheet. In a closed group
+ * faces that repeat each other stays: a sheet that was drawn from both sides is one sheet, and the side stays
+ * that looks away from the middle of the model, whichever comes first. In a closed group
  * a set of repeated faces that edges connect is judged as a whole:
  *  - If it is closed by itself, as a body that is there twice, one copy of each of its faces stays, also
  *    where another body shares some of them: of what was drawn from both sides, and does not lie within the

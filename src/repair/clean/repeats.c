@@ -8,13 +8,18 @@
 
 enum { PEELS_MAX = 16 };
 
+bool vxm_repeats_is_turned(const vxm_repeats *d, size_t face) {
+  int64_t surplus = vxm_repeats_surplus(&d->copies[face]);
+  return surplus != 0 ? surplus < 0 : d->turned[face];
+}
+
 /* ---- Fins ---- */
 
 static void look_at_kind(vxm_repeats *d, size_t face) {
   size_t fin_face = vxm_set_of(d->parent, face), count;
   vxm_fin *f = &d->fins[fin_face];
   const uint32_t *corner = vxm_face(d->soup, face, &count);
-  double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->scale));
+  double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->frame.scale));
   if (f->least == 0 || vxm_repeats_kept(d, face) < f->least)
     f->least = vxm_repeats_kept(d, face);
   if (vxm_repeats_kept(d, face) > f->most)
@@ -48,10 +53,13 @@ void vxm_repeats_find_fins(vxm_repeats *d) {
   }
   for (size_t face = 0; face < d->soup->face_count; face++) {
     const vxm_copies *copies = &d->copies[face];
-    bool same_way = d->kinds[face] == VXM_KIND_SAME_WAY, turned = vxm_repeats_surplus(copies) < 0;
+    bool same_way = d->kinds[face] == VXM_KIND_SAME_WAY;
+    if (d->kinds[face] == VXM_KIND_PLAIN)
+      continue;
+    bool turned = vxm_repeats_is_turned(d, face);
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
       size_t edge = d->groups.sides[c], place = 2 * edge + same_way;
-      if (d->kinds[face] == VXM_KIND_PLAIN || edge == VXM_NO_EDGE)
+      if (edge == VXM_NO_EDGE)
         continue;
       d->single[place]++;
       d->sides[place] += copies->same + copies->opposite;
@@ -149,8 +157,7 @@ static bool peel_shared(vxm_repeats *d) {
     uint32_t *keep = &d->keep[2 * face];
     found = true;
     if (shared) {
-      keep[0] = 1;
-      keep[1] = 0;
+      vxm_repeats_keep_one(d, face, vxm_repeats_is_turned(d, face));
       d->kinds[face] = VXM_KIND_SHEET;
     } else if (--keep[turned] == 1)
       d->kinds[face] = VXM_KIND_PLAIN;

@@ -35,8 +35,9 @@ typedef struct vxm_repeats {
   const vxm_soup *soup;
   const vxm_copies *copies;
   vxm_edge_groups groups;
-  double scale;
+  vxm_unit_scale frame;
   uint8_t *kinds;   /**< per face: of the first of its kind */
+  uint8_t *turned;  /**< per first face that is there as often either way: 1 = the other side stays */
   uint32_t *keep;   /**< per first face: how many copies stay of its orientation, and of the other */
   size_t *parent;   /**< per first face: another one of its fin, or itself */
   vxm_fin *fins;    /**< per face that stands for one */
@@ -58,6 +59,17 @@ static inline int64_t vxm_repeats_surplus(const vxm_copies *c) {
 
 static inline uint32_t vxm_repeats_kept(const vxm_repeats *d, size_t face) {
   return d->keep[2 * face] + d->keep[2 * face + 1];
+}
+
+/** Of a first face: whether one copy that stays is to run the other way than it. Most copies tell; where
+ * there are as many of one orientation as of the other the side that looks away from the middle of the model
+ * does, for all that hang together alike, whichever of them comes first in the file. */
+bool vxm_repeats_is_turned(const vxm_repeats *d, size_t face);
+
+/** Keeps one copy. */
+static inline void vxm_repeats_keep_one(const vxm_repeats *d, size_t face, bool turned) {
+  d->keep[2 * face + turned] = 1;
+  d->keep[2 * face + !turned] = 0;
 }
 
 /** Joins kinds to fins, and sees what the edges tell of these. */

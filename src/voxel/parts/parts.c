@@ -5,6 +5,7 @@
 #include "mesh/disjoint_sets.h"
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
+#include "voxel/parts/lone_sheets.h"
 
 #include <string.h>
 
@@ -19,6 +20,7 @@ typedef struct builder {
   vxm_split_rule rule;
   uint8_t *kind;            /**< of every component */
   uint32_t *loop_component; /**< of every loop */
+  vxm_opening *openings;    /**< of every component */
   uint32_t *root;           /**< component whose part a component shares */
   vxm_error error;          /**< of the last allocation that failed */
 } builder;
@@ -93,13 +95,17 @@ static vxm_status make_caps(builder *b, double scale, double *area) {
     if (status != VXM_OK)
       return status;
     s->cap_begin[l + 1] = s->caps.triangle_count;
+    double cap = 0;
     for (size_t t = s->cap_begin[l]; t < s->cap_begin[l + 1]; t++) {
       const uint32_t *v = s->caps.triangles[t];
       const double *p = vxm_caps_position(&s->caps, v[0]);
       vxm_vec3 u = vxm_vec3_between(vxm_caps_position(&s->caps, v[1]), p, scale);
       vxm_vec3 w = vxm_vec3_between(vxm_caps_position(&s->caps, v[2]), p, scale);
-      area[b->loop_component[l]] += vxm_vec3_length(vxm_vec3_cross(u, w)) / 2;
+      cap += vxm_vec3_length(vxm_vec3_cross(u, w)) / 2;
     }
+    double *widest = &b->openings[b->loop_component[l]].widest_cap;
+    area[b->loop_component[l]] += cap;
+    *widest = cap > *widest ? cap : *widest;
   }
   return VXM_OK;
 }
@@ -113,12 +119,37 @@ static vxm_status find_scale(builder *b, double *scale) {
   return VXM_OK;
 }
 
+/** Open components of which one cap alone is about as large as they are: sheets, if they stand alone. */
+static vxm_status find_lone_sheets(builder *b, const double *area) {
+  vxm_split *s = b->split;
+  bool any = false;
+  for (size_t c = 0; c < s->component_count; c++) {
+    vxm_opening *o = &b->openings[c];
+    o->open = b->kind[c] == VXM_PART_OPEN;
+    o->lone = o->open && area[c] > 0 && o->widest_cap >= capped_part_max * area[c];
+    any |= o->lone;
+  }
+  if (!any)
+    return VXM_OK;
+  vxm_status status = vxm_lone_sheets_keep(b->openings, b->soup, s->component, s->component_count, &b->error);
+  any = false;
+  for (size_t c = 0; c < s->component_count && status == VXM_OK; c++)
+    any |= b->openings[c].lone;
+  if (!any)
+    return status;
+  s->lone = allocate(b, s->component_count, sizeof *s->lone);
+  for (size_t c = 0; s->lone && c < s->component_count; c++)
+    s->lone[c] = b->openings[c].lone;
+  return s->lone ? VXM_OK : b->error.code;
+}
+
 static vxm_status find_kinds(builder *b) {
   vxm_split *s = b->split;
   b->kind = allocate(b, s->component_count, sizeof *b->kind);
   double *area = allocate(b, s->component_count, sizeof *area);
   double *caps = allocate(b, s->component_count, sizeof *caps);
-  if (!b->kind || !area || !caps) {
+  b->openings = allocate(b, s->component_count, sizeof *b->openings);
+  if (!b->kind || !area || !caps || !b->openings) {
     vxm_free(s->context, caps);
     vxm_free(s->context, area);
     return b->error.code;
@@ -138,6 +169,8 @@ static vxm_status find_kinds(builder *b) {
   for (size_t c = 0; c < s->component_count; c++)
     if (measure && b->kind[c] == VXM_PART_OPEN && caps[c] < capped_part_max * area[c])
       b->kind[c] = VXM_PART_CAPPED;
+  if (measure && status == VXM_OK)
+    status = find_lone_sheets(b, area);
   vxm_free(s->context, caps);
   vxm_free(s->context, area);
   return status;
@@ -228,6 +261,7 @@ vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, vxm_split_rule
   if (status == VXM_OK)
     status = number_parts(&b);
   vxm_free(soup->context, b.root);
+  vxm_free(soup->context, b.openings);
   vxm_free(soup->context, b.kind);
   vxm_free(soup->context, b.loop_component);
   if (status != VXM_OK)
@@ -243,12 +277,14 @@ void vxm_split_trim(vxm_split *split) {
   vxm_free(context, split->loop_part);
   vxm_free(context, split->part);
   vxm_free(context, split->component);
+  vxm_free(context, split->lone);
   if (split->loops.context)
     vxm_boundary_loops_destroy(&split->loops);
   if (split->edges.context)
     vxm_edges_destroy(&split->edges);
   split->cap_begin = NULL;
   split->loop_part = split->part = split->component = NULL;
+  split->lone = NULL;
 }
 
 void vxm_split_destroy(vxm_split *split) {

@@ -30,6 +30,7 @@ typedef struct vxm_split {
   size_t cavity_count; /**< components that share the part of the one around them, to be cut out of it */
   size_t capped_loops; /**< loops of capped parts */
   size_t odd_edge_count;
+  uint8_t *lone; /**< per component: a lone sheet (lone_sheets.h); NULL if there is none */
   vxm_edges edges;
   vxm_boundary_loops loops;
   uint32_t *loop_part; /**< part of every loop */
@@ -45,7 +46,7 @@ typedef struct vxm_split {
  *
  * With VXM_SPLIT_MODE_AUTO every closed or capped component is a part, a cavity shares the part of the
  * component around it (parity then leaves it hollow), and all open components are one part, so that panels
- * which touch without sharing vertices are seen together.
+ * which touch without sharing vertices are seen together. Those of them that are lone sheets are marked.
  *
  * @param[out] out freed with vxm_split_destroy, also after a failure
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED

@@ -108,12 +108,15 @@ static inline void cut_face(builder *b, size_t face) {
   size_t n;
   const uint32_t *corner = vxm_face(b->soup, face, &n);
   uint32_t part = split->part[split->component[face]];
+  size_t first = b->next[part];
   if (n == 3)
     add_face(b, part, corner[0], corner[1], corner[2]);
   else if (n == 4)
     cut_quad(b, part, corner);
   for (size_t t = 0; n > 4 && t + 2 < n; t++, b->cut_next++)
     add_face(b, part, b->cut[b->cut_next][0], b->cut[b->cut_next][1], b->cut[b->cut_next][2]);
+  if (b->triangles->lone && split->lone[split->component[face]])
+    memset(b->triangles->lone + first, 1, b->next[part] - first);
 }
 
 static bool add_triangles(builder *b) {
@@ -185,6 +188,8 @@ static vxm_status make_triangles(builder *b) {
   triangles->part = allocate_raw(b, total, sizeof *triangles->part);
   triangles->corners = allocate_raw(b, total, sizeof *triangles->corners);
   if (!triangles->corners || !triangles->part)
+    return b->error.code;
+  if (triangles->split.lone && !(triangles->lone = allocate(b, total, sizeof *triangles->lone)))
     return b->error.code;
   for (int w = 0; w < 3; w++)
     if (!walk[w](b))
@@ -357,6 +362,7 @@ void vxm_triangle_set_destroy(vxm_triangle_set *triangles) {
   vxm_free(triangles->context, triangles->vertex);
   vxm_free(triangles->context, triangles->parts);
   vxm_free(triangles->context, triangles->part);
+  vxm_free(triangles->context, triangles->lone);
   vxm_free(triangles->context, triangles->corners);
   *triangles = (vxm_triangle_set){.context = triangles->context, .split = {.context = triangles->context}};
 }

@@ -49,6 +49,7 @@ typedef struct vxm_triangle_set {
   uint32_t *part;         /**< of each triangle */
   size_t triangle_count;
   vxm_part *parts;
+  uint8_t *lone; /**< of each triangle: it belongs to a lone sheet (lone_sheets.h); NULL if none does */
   /* Points: the vertices that triangles have, and the caps' own, in the order in which triangles first have
      them, so that neighbours lie close together in memory; then an apex for each part. */
   size_t first_apex, point_count;

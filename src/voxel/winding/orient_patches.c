@@ -199,6 +199,7 @@ static voxel_triangle triangle_of(const builder *b, size_t t) {
 /** What speaks for the way a patch faces, each in units of area. */
 typedef struct opinion {
   double area, evidence, came; /**< `came`: how it came, before triangles were made consistent */
+  bool lone;                   /**< it is a lone sheet, whatever the grid tells */
 } opinion;
 
 /** Twice the area, in square voxels, of a patch about which the grid can tell anything: probes reach past all
@@ -206,7 +207,7 @@ typedef struct opinion {
 static const double told_area = 2 * 4;
 
 static bool is_told(const opinion *o) {
-  return o->area > 0 && fabs(o->evidence) >= evidence_min * o->area;
+  return !o->lone && o->area > 0 && fabs(o->evidence) >= evidence_min * o->area;
 }
 
 static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
@@ -221,6 +222,7 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
       continue;
     opinion *o = &opinions[b->patch[t]];
     o->area += length;
+    o->lone = b->leave_untold && b->triangles->lone && b->triangles->lone[b->triangle[t]];
     o->came += b->turn[t] ? -length : length;
     o->evidence += length * evidence_of(b, &triangle, n, length, voters);
   }
@@ -233,9 +235,8 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
     const opinion *o = &opinions[b->patch[t]];
     double facing = is_told(o) ? o->evidence : outward < 0 ? -o->came : o->came;
     bool inward = b->turn[t] ^ (facing < 0);
-    out->facing[t] = !is_told(o) && b->leave_untold && o->area >= told_area ? VXM_FACING_UNTOLD
-                     : inward                                               ? VXM_FACING_IN
-                                                                            : VXM_FACING_OUT;
+    bool untold = !is_told(o) && b->leave_untold && (o->area >= told_area || o->lone);
+    out->facing[t] = untold ? VXM_FACING_UNTOLD : inward ? VXM_FACING_IN : VXM_FACING_OUT;
   }
   vxm_free(out->context, opinions);
   return true;

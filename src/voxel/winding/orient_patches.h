@@ -25,8 +25,8 @@ typedef struct vxm_facings {
  * triangle. Which way a patch faces is read from the grid: on which side of it are more voxels set? Voxels on
  * which the voters disagree count less. Where the grid does not tell (a sheet), the patch keeps the
  * orientation that most of its area came with, or is left as untold, unless it is so small that it could not
- * be told. Unlike ray casting this costs a few look-ups per triangle, and it works across patches that share
- * no edge.
+ * be told. Where these are left so are lone sheets (voxel/parts/lone_sheets.h). Unlike ray casting this costs
+ * a few look-ups per triangle, and it works across patches that share no edge.
  *
  * @param placed the points on the lattice of the voters' grid
  * @param voters words of three grids, x fastest; the same three times if there was no vote

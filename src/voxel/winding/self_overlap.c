@@ -1,54 +1,38 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/self_overlap.h"
+#include "voxel/winding/probe_lines.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-  LINES_EVEN = 12,             /**< along y, and along z: evenly spaced ones at most, */
-  LINES_MOST = 2 * LINES_EVEN, /**< and as many again where the points of a part are */
-  SAMPLES = 64,                /**< points that tell where these are */
-  CELLS = 256,                 /**< of a part's width, in which lines are looked up */
-  CROSSINGS_MOST = 1 << 16,    /**< with more there are fewer lines */
-  INSERTED_MOST = 32           /**< crossings of a line that are sorted by insertion */
+  LINES_MOST = VXM_PROBE_MOST * VXM_PROBE_MOST,
+  CROSSINGS_MOST = 1 << 16, /**< with more there are fewer lines */
+  INSERTED_MOST = 32        /**< crossings of a line that are sorted by insertion */
 };
 
 /** Of the length inside: what is less is not worth the time, or comes of rounding. */
 static const double noticed = 1e-5;
 /** Of the same: what is left hollow is worth a word if it is more. */
 static const double told = 0.002;
-/** Where a line lies between two places: corners rarely lie there. */
-static const double between = 0.4371;
-
-/** Where lines along x lie along y, or along z. */
-typedef struct line_places {
-  double low, cells_per_unit;
-  double at[LINES_MOST + 2]; /**< in order, and NaN, which nothing reaches, behind */
-  int count;
-  uint8_t first[CELLS]; /**< of each cell: lines in those before */
-} line_places;
-
-/** How many lines lie below a point. */
-typedef struct line_cell {
-  uint8_t along[2];
-} line_cell;
-
 typedef struct crossing {
-  double x;
+  double at; /**< along the line */
   uint32_t line;
   int32_t sign;
 } crossing;
 
 typedef struct finder {
   const vxm_triangle_set *triangles;
-  line_places lines[2]; /**< along y, along z */
-  line_cell *cells;     /**< of each point */
+  vxm_probe_places places[3]; /**< along each axis */
+  vxm_probe_cell *cells;      /**< of each point */
   crossing *crossings;
   size_t count, capacity;
   crossing *sorted; /**< by line */
   size_t sorted_capacity, closed_capacity, part_capacity;
-  uint32_t ends[LINES_MOST * LINES_MOST + 1];
+  int along; /**< the axis of the lines */
+  uint32_t line_count;
+  uint32_t ends[LINES_MOST + 1];
   bool contradicted; /**< some lines are entered more or less often than left */
   /* Of the others: */
   double length;              /**< wound around at all */
@@ -61,21 +45,6 @@ typedef struct finder {
 
 static inline const double *position(const finder *f, uint32_t point) {
   return f->triangles->positions[point];
-}
-
-static inline int cell_of(const line_places *l, double at) {
-  double cell = (at - l->low) * l->cells_per_unit;
-  return cell > 0 ? cell < CELLS ? (int)cell : CELLS - 1 : 0;
-}
-
-/** How many lines lie at a coordinate or below. Every comparison of a coordinate with lines goes through
- * this, so that triangles that share an edge agree. */
-static inline uint8_t lines_below(const line_places *l, double at) {
-  int count = l->first[cell_of(l, at)];
-  count += l->at[count] <= at; /* few cells have a second one, so that the loop is rarely gone through */
-  while (l->at[count] <= at)
-    count++;
-  return (uint8_t)count;
 }
 
 /** The points of a part. */
@@ -92,124 +61,93 @@ static points points_of(const vxm_triangle_set *triangles, size_t part) {
                                                     : (uint32_t)triangles->first_apex};
 }
 
-static int compare_places(const void *a, const void *b) {
-  const double *p = a, *q = b;
-  return (*p > *q) - (*p < *q);
-}
-
-/** Puts lines between the points of a part, most where most points are. */
-static void add_lines_by_points(line_places *l, const finder *f, points range, int axis, int count) {
-  double sample[SAMPLES];
-  uint32_t all = range.end - range.begin, samples = all < SAMPLES ? all : SAMPLES;
-  for (uint32_t i = 0; i < samples; i++)
-    sample[i] = position(f, range.begin + (uint32_t)((uint64_t)all * i / samples))[1 + axis];
-  qsort(sample, samples, sizeof *sample, compare_places);
-  for (int i = 0; i < count; i++) {
-    uint32_t at = (uint32_t)(((uint64_t)2 * (unsigned)i + 1) * samples / (2 * (unsigned)count)),
-             next = at + 1;
-    while (next < samples && sample[next] == sample[at])
-      next++;
-    if (next < samples)
-      l->at[l->count++] = sample[at] + between * (sample[next] - sample[at]);
-  }
-}
-
-/** Lays lines along an axis; false if the points have no extent that could be told. */
-static bool lay_lines_along(line_places *l, const finder *f, points range, int axis, int count) {
-  double low = INFINITY, high = -INFINITY;
-  for (uint32_t p = range.begin; p < range.end; p++) {
-    double at = position(f, p)[1 + axis];
-    low = at < low ? at : low;
-    high = at > high ? at : high;
-  }
-  double step = (high - low) / count;
-  *l = (line_places){.low = low, .cells_per_unit = CELLS / (high - low)};
-  if (!isnormal(step) || !isnormal(l->cells_per_unit))
+/** Lays lines; false if the points have no extent that could be told. Of the axes behind that of the lines
+ * the first one is along rows of them, the second one across. */
+static bool lay_lines(finder *f, points range, int even) {
+  if (!vxm_probe_lines_lay(&f->along, f->places, f->cells + range.begin,
+                           (const double(*)[3])f->triangles->positions + range.begin, range.end - range.begin,
+                           even))
     return false;
-  for (int i = 0; i < count; i++)
-    l->at[l->count++] = low + (i + between) * step;
-  add_lines_by_points(l, f, range, axis, count);
-  qsort(l->at, (size_t)l->count, sizeof *l->at, compare_places);
-  l->at[l->count] = l->at[l->count + 1] = NAN;
-  for (int i = 0; i < l->count; i++)
-    for (int c = cell_of(l, l->at[i]) + 1; c < CELLS; c++)
-      l->first[c]++;
-  return true;
-}
-
-static bool lay_lines(finder *f, points range, int count) {
-  for (int a = 0; a < 2; a++)
-    if (!lay_lines_along(&f->lines[a], f, range, a, count))
-      return false;
-  for (uint32_t p = range.begin; p < range.end; p++)
-    for (int a = 0; a < 2; a++)
-      f->cells[p].along[a] = lines_below(&f->lines[a], position(f, p)[1 + a]);
+  f->line_count = (uint32_t)(f->places[(f->along + 1) % 3].count * f->places[(f->along + 2) % 3].count);
   return true;
 }
 
 /* ---- Crossings ---- */
 
+/** The axes of lines: along them, along a row of them, and across rows. */
+typedef struct line_axes {
+  int along, row, across;
+} line_axes;
+
 /** Where a side comes to a row of lines. */
 typedef struct side_place {
-  double x, y;
-  int columns; /**< lines of the row below y */
+  double along, row;
+  int columns; /**< lines of the row before it */
 } side_place;
 
-/** The same whichever way the side runs; y is between those of its ends. */
-static side_place place_on(const line_places *l, const double *p, const double *q, double z) {
-  const double *low = p[2] < q[2] ? p : q, *high = low == p ? q : p;
-  double share = (z - low[2]) / (high[2] - low[2]), y = low[1] + share * (high[1] - low[1]);
-  double least = p[1] < q[1] ? p[1] : q[1], most = p[1] < q[1] ? q[1] : p[1];
-  y = y < least ? least : y > most ? most : y;
-  return (side_place){low[0] + share * (high[0] - low[0]), y, lines_below(l, y)};
+static double clamped(double share) {
+  return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
-static bool add_row(finder *f, int row, const side_place *from, const side_place *to, int sign) {
-  const line_places *along_y = &f->lines[0];
+/** The same whichever way the side runs. */
+static side_place place_on(const vxm_probe_places *columns, line_axes axes, const double *p, const double *q,
+                           double at) {
+  const double *low = p[axes.across] < q[axes.across] ? p : q, *high = low == p ? q : p;
+  double share = clamped((at - low[axes.across]) / (high[axes.across] - low[axes.across]));
+  double row = low[axes.row] + share * (high[axes.row] - low[axes.row]);
+  double least = p[axes.row] < q[axes.row] ? p[axes.row] : q[axes.row];
+  double most = p[axes.row] < q[axes.row] ? q[axes.row] : p[axes.row];
+  row = row < least ? least : row > most ? most : row;
+  return (side_place){low[axes.along] + share * (high[axes.along] - low[axes.along]), row,
+                      vxm_probe_below(columns, row)};
+}
+
+/** @param first the line of the row that lies first */
+static bool add_row(finder *f, const vxm_probe_places *columns, uint32_t first, const side_place *from,
+                    const side_place *to, int sign) {
   size_t more = (size_t)(to->columns - from->columns);
   if (vxm_grow(f->triangles->context, (void **)&f->crossings, &f->capacity, f->count + more,
                sizeof *f->crossings, &f->error) != VXM_OK)
     return false;
-  double slope = (to->x - from->x) / (to->y - from->y);
   for (int c = from->columns; c < to->columns; c++) {
+    double share = clamped((columns->at[c] - from->row) / (to->row - from->row));
     f->crossings[f->count++] =
-        (crossing){from->x + (along_y->at[c] - from->y) * slope, (uint32_t)(row * along_y->count + c), sign};
+        (crossing){from->along + share * (to->along - from->along), first + (uint32_t)c, sign};
   }
   return true;
 }
 
-/** Crossings of a triangle: where its projection along x winds around a line, with the sign of that. */
+/** Crossings of a triangle: where its projection along the lines winds around one, with the sign of that. */
 static bool add_triangle(finder *f, const uint32_t k[3]) {
   /* The corner that lies alone on its side of a row, by which corners lie above. */
   static const uint8_t alone[8] = {0, 0, 1, 2, 2, 1, 0, 0};
-  int below[3], first = f->lines[1].count, end = 0;
+  const line_axes axes = {f->along, (f->along + 1) % 3, (f->along + 2) % 3};
+  const vxm_probe_places *columns = &f->places[axes.row], *rows = &f->places[axes.across];
+  int below[3], first = rows->count, end = 0;
   for (int i = 0; i < 3; i++) {
-    below[i] = f->cells[k[i]].along[1];
+    below[i] = vxm_probe_along(f->cells[k[i]], axes.across);
     first = below[i] < first ? below[i] : first;
     end = below[i] > end ? below[i] : end;
   }
   for (int row = first; row < end; row++) {
-    double z = f->lines[1].at[row];
+    double at = rows->at[row];
     int above = (below[0] > row) | (below[1] > row) << 1 | (below[2] > row) << 2, i = alone[above];
     const double *tip = position(f, k[i]);
-    side_place to = place_on(&f->lines[0], tip, position(f, k[i < 2 ? i + 1 : 0]), z);
-    side_place from = place_on(&f->lines[0], tip, position(f, k[i > 0 ? i - 1 : 2]), z);
+    side_place to = place_on(columns, axes, tip, position(f, k[i < 2 ? i + 1 : 0]), at);
+    side_place from = place_on(columns, axes, tip, position(f, k[i > 0 ? i - 1 : 2]), at);
     int sign = below[i] > row ? 1 : -1; /* of a row that is entered at `from` and left at `to` */
+    uint32_t line = (uint32_t)(row * columns->count);
     if (to.columns == from.columns)
       continue;
-    if (!(to.columns > from.columns ? add_row(f, row, &from, &to, sign) : add_row(f, row, &to, &from, -sign)))
+    if (!(to.columns > from.columns ? add_row(f, columns, line, &from, &to, sign)
+                                    : add_row(f, columns, line, &to, &from, -sign)))
       return false;
   }
   return true;
 }
 
-/** Whether lines lie between the corners of a triangle both along y and along z: told without a branch, as
- * nobody can tell beforehand. */
-static inline bool has_lines(const line_cell *cells, const uint32_t k[3]) {
-  line_cell a = cells[k[0]], b = cells[k[1]], c = cells[k[2]];
-  int along_y = (a.along[0] ^ b.along[0]) | (a.along[0] ^ c.along[0]);
-  int along_z = (a.along[1] ^ b.along[1]) | (a.along[1] ^ c.along[1]);
-  return (along_y != 0) & (along_z != 0);
+static inline uint32_t places_between(const finder *f, const uint32_t k[3]) {
+  return vxm_probe_between(f->cells[k[0]], f->cells[k[1]], f->cells[k[2]]);
 }
 
 /** Those of triangles begin..end-1, until they are more than CROSSINGS_MOST. */
@@ -219,9 +157,10 @@ static vxm_status find_crossings(finder *f, size_t begin, size_t end) {
   f->count = 0;
   for (size_t first = begin; first < end && f->count <= CROSSINGS_MOST; first += AT_ONCE) {
     size_t wanted[AT_ONCE], count = 0, last = first + AT_ONCE < end ? first + AT_ONCE : end;
-    for (size_t t = first; t < last; t++) {
+    for (size_t t = first; t < last; t++) { /* without a branch, as nobody can tell beforehand */
+      uint32_t between = places_between(f, corners[t]);
       wanted[count] = t;
-      count += has_lines(f->cells, corners[t]);
+      count += (between & (between - 1)) != 0; /* both axes */
     }
     if (vxm_check_cancelled(f->triangles->context, &f->error) != VXM_OK)
       return f->error.code;
@@ -235,12 +174,12 @@ static vxm_status find_crossings(finder *f, size_t begin, size_t end) {
 /* ---- Along the lines ---- */
 
 static vxm_status sort_by_line(finder *f) {
-  size_t line_count = (size_t)f->lines[0].count * (size_t)f->lines[1].count;
+  size_t line_count = f->line_count;
   vxm_status status = vxm_renew(f->triangles->context, (void **)&f->sorted, &f->sorted_capacity, f->count,
                                 sizeof *f->sorted, &f->error);
   if (status != VXM_OK)
     return status;
-  memset(f->ends, 0, sizeof f->ends);
+  memset(f->ends, 0, (line_count + 1) * sizeof *f->ends);
   for (size_t i = 0; i < f->count; i++)
     f->ends[f->crossings[i].line + 1]++;
   for (size_t line = 0; line < line_count; line++)
@@ -252,7 +191,7 @@ static vxm_status sort_by_line(finder *f) {
 
 static int compare(const void *a, const void *b) {
   const crossing *p = a, *q = b;
-  return (p->x > q->x) - (p->x < q->x);
+  return (p->at > q->at) - (p->at < q->at);
 }
 
 static void sort_along(crossing *at, size_t count) {
@@ -263,7 +202,7 @@ static void sort_along(crossing *at, size_t count) {
   for (size_t i = 1; i < count; i++) {
     crossing moved = at[i];
     size_t to = i;
-    for (; to > 0 && at[to - 1].x > moved.x; to--)
+    for (; to > 0 && at[to - 1].at > moved.at; to--)
       at[to] = at[to - 1];
     at[to] = moved;
   }
@@ -276,15 +215,15 @@ static int sum_of_signs(const crossing *at, size_t count) {
   return sum;
 }
 
-/** Adds up one line. */
-static void follow(finder *f, const crossing *at, size_t count) {
+/** Adds up one line, which stands for so much of what lies around it. */
+static void follow(finder *f, const crossing *at, size_t count, double weight) {
   if (sum_of_signs(at, count) != 0) {
     f->contradicted = true;
     return;
   }
   int wound = 0;
   for (size_t i = 0; i < count; i++) {
-    double length = wound ? at[i].x - at[i - 1].x : 0;
+    double length = wound ? weight * (at[i].at - at[i - 1].at) : 0;
     f->length += length;
     f->inside += wound * length;
     if (wound % 2 == 0)
@@ -294,15 +233,17 @@ static void follow(finder *f, const crossing *at, size_t count) {
 }
 
 static void follow_all(finder *f) {
-  size_t line_count = (size_t)f->lines[0].count * (size_t)f->lines[1].count, begin = 0;
+  const vxm_probe_places *columns = &f->places[(f->along + 1) % 3], *rows = &f->places[(f->along + 2) % 3];
+  size_t line = 0, begin = 0;
   f->contradicted = false;
   f->length = f->inside = f->twice_out = f->twice_in = 0;
-  for (size_t line = 0; line < line_count; line++) {
-    size_t count = f->ends[line] - begin;
-    sort_along(f->sorted + begin, count);
-    follow(f, f->sorted + begin, count);
-    begin = f->ends[line];
-  }
+  for (int row = 0; row < rows->count; row++)
+    for (int column = 0; column < columns->count; column++, line++) {
+      size_t count = f->ends[line] - begin;
+      sort_along(f->sorted + begin, count);
+      follow(f, f->sorted + begin, count, columns->width[column] * rows->width[row]);
+      begin = f->ends[line];
+    }
 }
 
 static double twice_of(const finder *f) {
@@ -372,14 +313,14 @@ static vxm_status look_at_part(vxm_self_overlap *out, finder *f, size_t part) {
   if (begin == end)
     return VXM_OK;
   points range = points_of(f->triangles, part);
-  int count = (int)fmin(sqrt((double)(end - begin)) / 4 + 3, LINES_EVEN);
+  int even = (int)fmin(sqrt((double)(end - begin)) / 4 + 4, VXM_PROBE_EVEN) / 2 * 2;
   vxm_status status = VXM_OK;
   do {
-    if (!lay_lines(f, range, count))
+    if (!lay_lines(f, range, even))
       return VXM_OK;
     status = find_crossings(f, begin, end);
-    count /= 2;
-  } while (status == VXM_OK && f->count > CROSSINGS_MOST && count > 0);
+    even = even / 4 * 2; /* an even number, too */
+  } while (status == VXM_OK && f->count > CROSSINGS_MOST && even > 0);
   if (status != VXM_OK || f->count > CROSSINGS_MOST)
     return status;
   status = sort_by_line(f);

@@ -22,8 +22,8 @@ typedef struct vxm_self_overlap {
 /**
  * Finds the closed and capped parts that lie in themselves.
  *
- * Lines along x through each part are followed from face to face: up to 12 x 12 of them as far apart as one
- * another, and as many again along y and z where the part has its points. A part counts where these lines run
+ * Lines along the shortest side of each part are followed from face to face, up to 24 x 24 of them
+ * (probe_lines.h). A part counts where these lines run
  * through what is wound twice, or more often, for more than 10^-5 of what they run inside of; so one that
  * overlaps itself in a small place only may be passed over. Its faces must be wound consistently, as a repair
  * leaves them where it can: a wall of two skins that face the same way is wound twice as well, and hollow.
