@@ -375,8 +375,8 @@ static uint32_t set_of(const builder *b, uint32_t component) {
   return b->soup->face_sets[b->faces[b->bodies[component].first]];
 }
 
-/** @param own_set only those of the component's set come into question */
-static vxm_status find_parent(builder *b, uint32_t component, bool own_set, uint32_t *parent) {
+/** Begins the search for what the box of a component lies in. */
+static void search_around(builder *b, uint32_t component) {
   const body *inner = &b->bodies[component];
   double box[6];
   for (int a = 0; a < 3; a++) {
@@ -384,7 +384,19 @@ static vxm_status find_parent(builder *b, uint32_t component, bool own_set, uint
     box[a + 3] = inner->box[a + 3] - b->leeway;
   }
   vxm_box_tree_search(&b->around, box, first_larger(b, inner));
-  for (int tries = 0, looks = 0; tries < TRIES_MAX && looks < 16 * TRIES_MAX; looks++) {
+}
+
+/**
+ * Finds the components around another one, the smallest ones first.
+ *
+ * @param own_set only those of the component's set come into question
+ * @param most    so many of them will do
+ */
+static vxm_status find_around(builder *b, uint32_t component, bool own_set, uint32_t *around, size_t most,
+                              size_t *count) {
+  search_around(b, component);
+  *count = 0;
+  for (int tries = 0, looks = 0; tries < TRIES_MAX && looks < 16 * TRIES_MAX && *count < most; looks++) {
     uint32_t place = vxm_box_tree_next(&b->around);
     if (place == VXM_NO_BOX)
       break;
@@ -395,42 +407,94 @@ static vxm_status find_parent(builder *b, uint32_t component, bool own_set, uint
     vxm_status status = contains(b, b->order[place], component, &within);
     if (status != VXM_OK)
       return status;
-    if (within) {
-      *parent = b->order[place];
-      break;
-    }
+    if (within)
+      around[(*count)++] = b->order[place];
   }
   return VXM_OK;
 }
 
 static bool find_parents(builder *b, uint32_t *parents) {
+  size_t count;
   b->inside = allocate(b, b->count, sizeof *b->inside);
   if (!b->inside)
     return false;
   for (size_t i = 0; i < b->order_count; i++) {
     uint32_t *parent = &parents[b->order[i]];
     if (vxm_check_cancelled(b->context, &b->error) != VXM_OK ||
-        (b->soup->face_sets && find_parent(b, b->order[i], true, parent) != VXM_OK) ||
-        (*parent == VXM_NO_COMPONENT && find_parent(b, b->order[i], false, parent) != VXM_OK))
+        (b->soup->face_sets && find_around(b, b->order[i], true, parent, 1, &count) != VXM_OK) ||
+        (*parent == VXM_NO_COMPONENT && find_around(b, b->order[i], false, parent, 1, &count) != VXM_OK))
       return false;
   }
   return true;
+}
+
+/* ---- Voids ---- */
+
+static vxm_status list_around(void *payload, uint32_t component, uint32_t **around, size_t *count,
+                              vxm_error *error) {
+  builder *b = payload;
+  uint32_t list[2 * TRIES_MAX];
+  size_t own = 0, all = 0;
+  vxm_status status = vxm_check_cancelled(b->context, &b->error);
+  if (status == VXM_OK && b->soup->face_sets)
+    status = find_around(b, component, true, list, TRIES_MAX, &own);
+  if (status == VXM_OK)
+    status = find_around(b, component, false, list + own, TRIES_MAX, &all);
+  *count = own + all; /* those of the own set are there twice: they are to be chosen first */
+  *around = status == VXM_OK ? allocate(b, *count, sizeof **around) : NULL;
+  if (!*around) {
+    vxm_error_pass(error, &b->error);
+    return b->error.code;
+  }
+  memcpy(*around, list, *count * sizeof *list);
+  return VXM_OK;
+}
+
+static bool may_have_several(void *payload, uint32_t component) {
+  builder *b = payload;
+  search_around(b, component);
+  return vxm_box_tree_next(&b->around) != VXM_NO_BOX && vxm_box_tree_next(&b->around) != VXM_NO_BOX;
+}
+
+static bool may_overlap(void *payload, uint32_t a, uint32_t b) {
+  const builder *p = payload;
+  const double *s = p->bodies[a].box, *t = p->bodies[b].box, touch = 2 * p->leeway;
+  for (int x = 0; x < 3; x++)
+    if (s[x + 3] - t[x] <= touch || t[x + 3] - s[x] <= touch)
+      return false;
+  return true;
+}
+
+static bool find_voids(builder *b, vxm_containment *out) {
+  const vxm_void_search search = {.context = b->context,
+                                  .count = b->count,
+                                  .order = b->order,
+                                  .order_count = b->order_count,
+                                  .parent = out->parent,
+                                  .volume = out->volume,
+                                  .list_around = list_around,
+                                  .may_have_several = may_have_several,
+                                  .may_overlap = may_overlap,
+                                  .payload = b};
+  return vxm_voids_find(out->body, &search, &b->error) == VXM_OK;
 }
 
 /* ---- All together ---- */
 
 static bool run(builder *b, vxm_containment *out) {
   out->parent = allocate(b, b->count, sizeof *out->parent);
+  out->body = allocate(b, b->count, sizeof *out->body);
   out->volume = allocate(b, b->count, sizeof *out->volume);
   b->bodies = allocate(b, b->count + 1, sizeof *b->bodies);
-  if (!out->parent || !out->volume || !b->bodies || !measure_bodies(b))
+  if (!out->parent || !out->body || !out->volume || !b->bodies || !measure_bodies(b))
     return false;
   scale_boxes(b);
   for (size_t i = 0; i < b->count; i++)
-    out->parent[i] = VXM_NO_COMPONENT;
+    out->parent[i] = out->body[i] = VXM_NO_COMPONENT;
   if (!sum_volumes(b, out->volume) || !order_bodies(b))
     return false;
-  return b->order_count < 2 || (list_faces(b) && list_candidates(b) && find_parents(b, out->parent));
+  return b->order_count < 2 ||
+         (list_faces(b) && list_candidates(b) && find_parents(b, out->parent) && find_voids(b, out));
 }
 
 vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, const uint32_t *face_labels,
@@ -465,6 +529,7 @@ void vxm_containment_destroy(vxm_containment *containment) {
   if (!containment->context)
     return;
   vxm_free(containment->context, containment->volume);
+  vxm_free(containment->context, containment->body);
   vxm_free(containment->context, containment->parent);
   *containment = (vxm_containment){0};
 }

@@ -4,19 +4,20 @@
 #define VXM_MESH_CONTAINMENT_H
 
 #include "mesh/soup.h"
-
-#define VXM_NO_COMPONENT UINT32_MAX
+#include "mesh/voids.h"
 
 typedef struct vxm_containment {
   vxm_context *context;
   size_t count;     /**< components */
   uint32_t *parent; /**< the smallest solid component around each, of its set if there is one; or
                        VXM_NO_COMPONENT */
+  uint32_t *body;   /**< the component that each is a void of (vxm_voids_find), or VXM_NO_COMPONENT */
   double *volume;   /**< signed, about the middle of the component's box: negative if it is wound inward */
 } vxm_containment;
 
 /**
- * Finds for every solid component the smallest other solid component that it lies inside of.
+ * Finds for every solid component the smallest other solid component that it lies inside of, and which voids
+ * are to be cut out of which.
  *
  * @param[out] out     freed with vxm_containment_destroy; empty after a failure
  * @param face_labels  component of every face, below `count` (vxm_components)

@@ -55,15 +55,16 @@ static bool measure(sorting *s) {
   return true;
 }
 
-/** Whether a component came inside out. What is wound against that around it is a cavity of that. */
+/** Whether a component came inside out, or the body that it is a void of. What has no volume goes with what
+ * is around it. */
 static bool is_inward(const sorting *s, const vxm_containment *containment, size_t number) {
   if (!s->closed[number])
     return s->volume < 0;
-  bool inward = containment->volume[number] < 0;
-  for (uint32_t at = containment->parent[number];
-       at != VXM_NO_COMPONENT && inward != (containment->volume[at] < 0); at = containment->parent[at])
-    inward = containment->volume[at] < 0;
-  return inward;
+  while (containment->volume[number] == 0 && containment->parent[number] != VXM_NO_COMPONENT)
+    number = containment->parent[number];
+  if (containment->body[number] != VXM_NO_COMPONENT)
+    number = containment->body[number];
+  return containment->volume[number] < 0;
 }
 
 static bool mark(sorting *s, uint8_t *inward) {

@@ -114,7 +114,7 @@ static void boxes_turn_outward(void **state) {
   }
 }
 
-/** Boxes in boxes: what was wound against its parent stays against it, all else is outward. */
+/** Boxes in boxes: inward is in the end where fewer wind round the points within than round those without. */
 static void cavities_stay(void **state) {
   enum { LEVELS = 4 };
   for (int mask = 0; mask < 1 << LEVELS; mask++)
@@ -128,10 +128,11 @@ static void cavities_stay(void **state) {
       REPAIR_REPORT(report);
       vxm_soup *out = oriented(soup, &report);
       assert_int_equal(report.after->inconsistent_edges, 0);
-      bool wanted = false; /* inward */
+      int winding = 0;
       for (int i = 0; i < LEVELS; i++) {
-        bool against = i > 0 && ((mask >> i ^ mask >> (i - 1)) & 1);
-        wanted = against ? !wanted : false;
+        int without = abs(winding);
+        winding += mask >> i & 1 ? -1 : 1;
+        bool wanted = abs(winding) < without; /* inward */
         double volume = volume_of(out, 6 * (size_t)i, 6 * (size_t)i + 6);
         assert_true(wanted ? volume < 0 : volume > 0);
       }

@@ -4,6 +4,7 @@
 #include "repair/bodies/body_faces.h"
 #include "repair/bodies/hanging_sheets.h"
 #include "repair/bodies/layers.h"
+#include "repair/bodies/whole_patches.h"
 
 #include <stdlib.h>
 
@@ -15,8 +16,10 @@ typedef struct parting {
   vxm_group_rims rims;
   uint8_t *asked;  /**< per group: it is to be divided into layers */
   uint8_t *failed; /**< per group: it was asked and could not be */
+  uint8_t *whole;  /**< per face that stands for a patch of such a group: the patch is closed for itself */
   vxm_layers layers;
   vxm_body_faces result;
+  bool any_inward; /**< a group winds round something the other way */
   vxm_error error;
 } parting;
 
@@ -68,7 +71,7 @@ static bool put(parting *p, uint64_t body, size_t face, bool reversed) {
 }
 
 /** Layer k > 0 bounds what the faces wind round at least k times, layer k < 0 what they wind round -k times
- * or more the other way, with the faces turned. */
+ * or more the other way. */
 static uint64_t body_of(size_t group, int64_t layer) {
   return ((uint64_t)group + 1) << 32 | (uint64_t)(layer + INT32_MAX);
 }
@@ -79,15 +82,23 @@ static bool put_layers(parting *p, size_t face) {
   int64_t behind = front + vxm_layers_surplus(&p->layers, face);
   bool done = true;
   for (int64_t k = front + 1; k <= behind && done; k++)
-    done = put(p, body_of(group, k > 0 ? k : k - 1), face, k <= 0);
+    done = put(p, body_of(group, k > 0 ? k : k - 1), face, k <= 0 && p->state->options.keep_orientation);
+  p->any_inward |= front < 0;
   return done;
+}
+
+/** What is closed for itself in a group without layers is a body of its own: above all other numbers. */
+static uint64_t body_of_patch(size_t patch) {
+  return UINT64_C(1) << 63 | patch;
 }
 
 static bool put_faces(parting *p, const uint8_t *touches) {
   bool done = true;
   for (size_t f = 0; f < p->soup->face_count && done; f++) {
     size_t group = p->groups.of_face[f];
-    if (!p->asked[group] || p->failed[group])
+    if (p->failed[group] && p->whole && p->whole[vxm_set_of(p->layers.patch, f)])
+      done = put(p, body_of_patch(vxm_set_of(p->layers.patch, f)), f, false);
+    else if (!p->asked[group] || p->failed[group])
       done = put(p, touches[group] ? body_of(group, 0) : 0, f, false);
     else if (vxm_layers_surplus(&p->layers, f) == 0)
       done = p->copies[f].first != f || vxm_layers_hides(&p->layers, f) ||
@@ -145,6 +156,13 @@ static bool check_layers(parting *p) {
   return true;
 }
 
+static bool find_whole(parting *p) {
+  p->whole = scratch(p, p->soup->face_count, sizeof *p->whole);
+  vxm_status status =
+      p->whole ? vxm_whole_patches_find(p->whole, p->failed, &p->layers, &p->error) : p->error.code;
+  return status == VXM_OK || fail(p, status);
+}
+
 /* ---- The pass ---- */
 
 /** A group of which a patch is not known has no layers. */
@@ -165,7 +183,8 @@ static bool find_layers(parting *p) {
   l->patch = p->copies ? scratch(p, faces, sizeof *l->patch) : NULL;
   l->front = l->patch ? scratch(p, faces, sizeof *l->front) : NULL;
   l->known = l->front ? scratch(p, faces, sizeof *l->known) : NULL;
-  p->failed = l->known ? scratch(p, p->groups.count, sizeof *p->failed) : NULL;
+  l->cut = l->known ? scratch(p, faces, sizeof *l->cut) : NULL;
+  p->failed = l->cut ? scratch(p, p->groups.count, sizeof *p->failed) : NULL;
   bool done = p->failed && vxm_duplicates_find(&found, p->state->context, p->soup, NULL, kinds, p->copies,
                                                &p->error) == VXM_OK;
   l->state = p->state;
@@ -217,9 +236,10 @@ static bool divide(parting *p, const uint8_t *touches, bool mixed, bool *changed
     return false;
   if (!any)
     return true;
-  if (!put_faces(p, touches) || !check_layers(p))
+  if (!put_faces(p, touches) || !check_layers(p) || (!mixed && !find_whole(p)))
     return false;
   p->result.count = 0;
+  p->any_inward = false;
   if (!put_faces(p, touches)) /* once more, without what is none */
     return false;
   state->shared_faces = count_shared(p);
@@ -229,7 +249,9 @@ static bool divide(parting *p, const uint8_t *touches, bool mixed, bool *changed
     return fail(p, status);
   state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
   *changed = true;
-  return true;
+  bool turned;
+  status = p->any_inward ? vxm_pass_orientation(state, &turned, &p->error) : VXM_OK;
+  return status == VXM_OK || fail(p, status);
 }
 
 static bool find_groups(parting *p, bool *any, uint8_t **touches) {
@@ -302,7 +324,9 @@ static vxm_status part(vxm_repair_state *state, bool mixed, bool *changed, vxm_e
     done = divide(&p, touches, mixed, changed);
   vxm_free(state->context, p.result.faces);
   vxm_group_rims_destroy(&p.rims, state->context);
+  vxm_free(state->context, p.whole);
   vxm_free(state->context, p.failed);
+  vxm_free(state->context, p.layers.cut);
   vxm_free(state->context, p.layers.known);
   vxm_free(state->context, p.layers.front);
   vxm_free(state->context, p.layers.patch);

@@ -78,6 +78,7 @@ static void take_answers(vxm_layers *l, const vxm_face_set_side *sets, size_t co
     for (size_t j = 0; j < count; j++)
       votes += sets[j].front == sets[i].front && sets[j].back == sets[i].back;
     bool fits = sets[i].back - sets[i].front == surplus;
+    l->cut[root] = l->cut[root] || (fits && l->known[root] && sets[i].front != l->front[root]);
     if (votes > (fits && !l->known[root] ? 0 : most) && (fits || !l->known[root])) {
       most = votes;
       l->known[root] = fits;

@@ -20,6 +20,7 @@ typedef struct vxm_layers {
                      group and of what lies around all of that. Behind it is more by vxm_layers_surplus.
                      The same per sheet */
   bool *known;    /**< the same: `front` is */
+  bool *cut;      /**< the same: it is not the same all over the patch, as other faces cut through it */
 } vxm_layers;
 
 /** How many more of its kind run as this face does than the other way. */
@@ -44,7 +45,7 @@ static inline bool vxm_layers_hides(const vxm_layers *layers, size_t face) {
  * tells them; where another face lies upon it, or they do not differ as they should, they follow from what
  * the edges of other patches lack (repair/bodies/layer_balance.c).
  *
- * @param layers `patch`, `front` and `known` have room for face_count elements and are filled
+ * @param layers `patch`, `front`, `known` and `cut` have room for face_count elements and are filled
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 vxm_status vxm_layers_find(vxm_layers *layers, vxm_error *error);

@@ -325,9 +325,14 @@ static void choose_sides(const vxm_containment *containment, const uint8_t *soli
       size_t child = chain[--depth];
       uint32_t parent = containment->parent[child];
       bool inward = is_inward(containment, child, follow);
+      uint32_t body = containment->body[child];
       over[child] = inward;
-      if (parent != VXM_NO_COMPONENT && inward != is_inward(containment, parent, follow))
+      if (containment->volume[child] == 0 && parent != VXM_NO_COMPONENT &&
+          inward != is_inward(containment, parent, follow))
         over[child] = over[parent]; /* against the parent it stays */
+      else if (body != VXM_NO_COMPONENT)
+        over[child] =
+            held[body] ? follow : is_inward(containment, body, follow); /* as what it is a void of */
       if (held[child])
         over[child] = follow;
       known[child] = 1;
@@ -375,10 +380,11 @@ static bool find_containment(orienting *o, const uint8_t *solid, vxm_containment
     return vxm_containment_build(containment, o->soup, o->label, o->patch_count, solid, &o->error) == VXM_OK;
   *containment = (vxm_containment){.context = o->state->context, .count = 1};
   containment->parent = allocate(o, 1, sizeof *containment->parent);
+  containment->body = allocate(o, 1, sizeof *containment->body);
   containment->volume = allocate(o, 1, sizeof *containment->volume);
-  if (!containment->parent || !containment->volume)
+  if (!containment->parent || !containment->body || !containment->volume)
     return false;
-  containment->parent[0] = VXM_NO_COMPONENT;
+  containment->parent[0] = containment->body[0] = VXM_NO_COMPONENT;
   containment->volume[0] = o->volume;
   return true;
 }
@@ -448,10 +454,10 @@ static bool note_turned(orienting *o, bool *changed) {
 
 /**
  * Turns faces: consistent within a patch, and patches that are closed or nearly so outward. A patch inside
- * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
- * about an edge stay as they are, and sheets keep the side that most of their area has; both are turned where
- * the model as a whole came inside out. A patch that no turning makes consistent gets as few inconsistent
- * edges as a longest spanning tree leaves (spanning_turns.h).
+ * another one that was wound against it is a cavity and stays so, unless it lies in a cavity of that. Patches
+ * that only together are consistent about an edge stay as they are, and sheets keep the side that most of
+ * their area has; both are turned where the model as a whole came inside out. A patch that no turning makes
+ * consistent gets as few inconsistent edges as a longest spanning tree leaves (spanning_turns.h).
  */
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;

@@ -167,6 +167,12 @@ static bool is_asked(const vxm_repeats *d, size_t face) {
   return whole ? root == face || may_be_body(d, face) : may_be_wall(d, face);
 }
 
+/** Whether a face is the wall between a room and another one that is inside out, unless that is a void in
+ * what is around it. */
+static bool is_wall(const vxm_face_set_side *s) {
+  return s->front == -1 && s->back == 1 && (s->front + s->around[0]) * (s->back + s->around[1]) < 0;
+}
+
 /** Asks one face of a fin, or all of them, whether they lie within the solid: all have to. */
 static vxm_status ask(vxm_repeats *d, vxm_face_set_side *sets, size_t asked, const uint8_t *bound,
                       uint8_t *within, vxm_error *error) {
@@ -175,8 +181,7 @@ static vxm_status ask(vxm_repeats *d, vxm_face_set_side *sets, size_t asked, con
     within[sets[i].set] = 1;
   for (size_t i = 0; status == VXM_OK && i < asked; i++) {
     const vxm_face_set_side *s = &sets[i];
-    /* between a room and another one that is inside out */
-    bool wall = may_be_wall(d, s->face) ? s->front == -1 && s->back == 1 : s->within;
+    bool wall = may_be_wall(d, s->face) ? is_wall(s) : s->within;
     within[s->set] = within[s->set] && wall;
   }
   if (status == VXM_OK && asked > 0)
@@ -200,8 +205,10 @@ static vxm_status find_within(vxm_repeats *d, uint8_t *within, vxm_error *error)
     if (is_asked(d, face)) {
       size_t root = vxm_set_of(d->parent, face);
       bool wall = may_be_wall(d, face), each = wall || may_be_body(d, face);
-      sets[asked++] =
-          (vxm_face_set_side){.face = each ? face : d->fins[root].largest, .set = root, .asks_within = !wall};
+      sets[asked++] = (vxm_face_set_side){.face = each ? face : d->fins[root].largest,
+                                          .set = root,
+                                          .asks_within = !wall,
+                                          .asks_around = wall};
     }
   if (sets)
     status = ask(d, sets, asked, bound, within, error);

@@ -81,7 +81,7 @@ static vxm_status keep_cavities(dropping *d, vxm_error *error) {
   for (size_t p = 0; p < d->part_count && status == VXM_OK; p++) {
     uint32_t around = (uint32_t)p;
     while (around != VXM_NO_COMPONENT && d->parts[around].goes && is_cavity(&d->parts[around]))
-      around = within.parent[around];
+      around = within.body[around] != VXM_NO_COMPONENT ? within.body[around] : within.parent[around];
     if (is_cavity(&d->parts[p]) && around != VXM_NO_COMPONENT)
       d->parts[p].goes = d->parts[around].goes;
   }

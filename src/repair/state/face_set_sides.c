@@ -202,6 +202,9 @@ static vxm_status ask_group(keyed_set *sets, size_t count, asking *a, vxm_error 
                               .scale = a->scale};
   vxm_point_in_mesh_find_box(&inside);
   vxm_status status = find_around(sets, count, a, &inside, &around, error);
+  for (size_t i = 0; i < count && status == VXM_OK && around == 0 && !a->alone; i++)
+    if (sets[i].set.asks_around)
+      status = look_around(sets[i].set.around, a, &inside, sets[i].set.face, error);
   if (inside.face_count == 0 && around == 0)
     return status;
   double gap = gap_of(&inside);

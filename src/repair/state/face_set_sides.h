@@ -12,9 +12,12 @@ typedef struct vxm_face_set_side {
   size_t set;       /**< for the caller */
   int place;        /**< where: 0 = its middle, up to VXM_FACE_PLACES - 1 = near one of its corners */
   bool asks_within; /**< whether `within` is to be told, which takes rays along three axes instead of one */
-  int front, back;  /**< how often the faces of its group wind round the points before it (where its normal
-                       points)  and behind it, as a ray to either side tells; themselves at the face passed
-                       over. What winds  round all of the group is counted, too */
+  bool asks_around; /**< whether `around` is to be told, where what is around it differs within its group */
+  int around[2]; /**< how often other groups, not counted in `front` and `back`, wind round the points before
+                    it and behind it */
+  int front, back; /**< how often the faces of its group wind round the points before it (where its normal
+                      points)  and behind it, as a ray to either side tells; themselves at the face passed
+                      over. What winds  round all of the group is counted, too */
   bool within; /**< the group, alone or with what winds round it, bounds a solid that it lies in: by most of
                   six rays along the axes, counted with their turn where the group is balanced, else as odd or
                   even. So a wall between two voids lies within, too, as one between two rooms does */

@@ -197,14 +197,12 @@ static vxm_status find_cavities(builder *b, vxm_error *error) {
     vxm_containment containment;
     status = vxm_containment_build(&containment, b->soup, s->component, s->component_count, solid, error);
     for (size_t c = 0; status == VXM_OK && c < s->component_count; c++) {
-      uint32_t parent = containment.parent[c];
-      if (parent == VXM_NO_COMPONENT)
+      bool keep = b->rule.cavities == VXM_CAVITIES_KEEP;
+      uint32_t body = keep ? containment.parent[c] : containment.body[c];
+      if (body == VXM_NO_COMPONENT)
         continue;
-      bool against = (containment.volume[c] < 0) != (containment.volume[parent] < 0);
-      if (against || b->rule.cavities == VXM_CAVITIES_KEEP) {
-        b->root[c] = parent;
-        s->cavity_count++;
-      }
+      b->root[c] = body;
+      s->cavity_count++;
     }
     vxm_containment_destroy(&containment);
   }
