@@ -87,6 +87,7 @@ typedef struct vxm_repair_state {
   int64_t tries;              /**< of the union */
   int64_t wrapped;            /**< parts that were wrapped as the union had left them */
   bool collapses;             /**< the shortest edges of unions are collapsed */
+  bool outward_only;          /**< unions leave out what parts wind round the other way */
   bool doubles_only;          /**< vertices are not to differ as 32-bit floats: that would have faces meet */
   int64_t crossings[2];       /**< self-intersections before and after, or -1 */
   int64_t together;           /**< vertices that were to be moved apart and could not be */
