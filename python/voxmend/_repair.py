@@ -99,8 +99,8 @@ def _remaining(report: Any) -> List[str]:
         out.append("%d parts still cut through others or themselves, and what is open has no inside to unite" %
                    report.union_failures)
     if report.emptied_parts > 0:
-        out.append("the union has taken away some of what %d closed parts enclosed, as of one that runs through itself and is wound "
-                   "the other way there, or lies in a cavity; remesh keeps it" % report.emptied_parts)
+        out.append("the union has taken away some of what %d closed parts enclosed, as of one that lies in a cavity; remesh "
+                   "keeps it" % report.emptied_parts)
     return out
 
 

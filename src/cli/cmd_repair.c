@@ -267,7 +267,11 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
 }
 
 /** What helps where a level is not reached. */
-static const char *advice(const vxm_repair_options *repair) {
+static const char *advice(const vxm_repair_options *repair, const repair_outcome *outcome) {
+  if (repair_leaves_slivers(outcome))
+    return "choose --level solid, which takes away the slivers that the union has there, leave out --union, "
+           "or "
+           "take what there is (--best-effort)";
   if (repair->level == VXM_LEVEL_CLEAN)
     return repair->single_precision ? "write another format than stl, or take what there is (--best-effort)"
                                     : "repair the result again, or take what there is (--best-effort)";
@@ -280,9 +284,8 @@ static const char *advice(const vxm_repair_options *repair) {
 static void warn_emptied(cli_run *cli, const char *input, int64_t parts) {
   if (parts > 0)
     cli_warn(cli,
-             "%s: the union has taken away some of what %lld closed %s enclosed, as of one that runs through "
-             "itself and is wound the other way there, or lies in a cavity; voxmend remesh keeps it, and "
-             "voxmend voxelize takes the mesh as it is",
+             "%s: the union has taken away some of what %lld closed %s enclosed, as of one that lies in a "
+             "cavity; voxmend remesh keeps it, and voxmend voxelize takes the mesh as it is",
              cli_shown(input, "<stdin>"), (long long)parts, parts == 1 ? "part" : "parts");
 }
 
@@ -290,7 +293,7 @@ static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcom
   vxm_status status = vxm_mesh_write_verified(&outcome->verification, outcome->mesh, given->output,
                                               &given->write, &given->repair, given->best_effort, &cli->error);
   if (status == VXM_ERROR_UNREACHED) {
-    cli_advise(cli, advice(&given->repair));
+    cli_advise(cli, advice(&given->repair, outcome));
     return refuse(cli, given, outcome);
   }
   if (status != VXM_OK)
@@ -333,6 +336,7 @@ static int run(cli_run *cli) {
                             .after = VXM_CENSUS_INIT,
                             .level = given.repair.level,
                             .sheets = given.repair.sheets,
+                            .single_precision = given.repair.single_precision,
                             .verification = VXM_VERIFICATION_INIT};
   outcome.repair.before = &outcome.before;
   outcome.repair.after = &outcome.after;

@@ -11,7 +11,8 @@ typedef struct repair_outcome {
   vxm_census before, after;
   vxm_level level;
   vxm_sheets sheets;
-  double seconds; /**< that the repair took */
+  bool single_precision; /**< the file has 32-bit floats, as .stl */
+  double seconds;        /**< that the repair took */
   vxm_verification verification;
   cli_found found; /**< in the mesh as it was read */
 } repair_outcome;
@@ -26,6 +27,8 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
 /** Says which parts could not be united. */
 void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome *outcome);
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome);
+/** Whether vertices could not be moved apart beside slivers of a union, which level solid takes away. */
+bool repair_leaves_slivers(const repair_outcome *outcome);
 /** A line for each thing that keeps the level from being reached. */
 void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome);
 

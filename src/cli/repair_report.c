@@ -231,15 +231,34 @@ static void say_long(FILE *stream, const repair_outcome *outcome) {
             outcome->seconds, united);
 }
 
+/** Why vertices are together still, and what helps. */
+static void say_unparted(FILE *stream, const repair_outcome *outcome) {
+  const char *why = outcome->single_precision
+                        ? "the numbers of the file are too coarse\n"
+                          "  there; write another format than .stl, or move the model to the origin\n"
+                    : repair_leaves_slivers(outcome)
+                        ? "the union has slivers there that are\n"
+                          "  too thin; --level solid takes those away, or leave out --union\n"
+                        : "faces there are too thin, or too far from\n"
+                          "  the origin; go around them (--wrap), or move the model to the origin\n";
+  if (outcome->repair.unparted_vertices > 0)
+    fprintf(stream, "  %" PRId64 " vertices share positions and could not be moved apart: %s",
+            outcome->repair.unparted_vertices, why);
+}
+
+bool repair_leaves_slivers(const repair_outcome *outcome) {
+  bool united = false;
+  for (int i = 0; i < outcome->repair.pass_count; i++)
+    united = united ||
+             (strcmp(outcome->repair.passes[i].pass, "union") == 0 && outcome->repair.passes[i].count > 0);
+  return united && outcome->level < VXM_LEVEL_SOLID && !outcome->single_precision &&
+         outcome->repair.unparted_vertices > 0;
+}
+
 void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome) {
   (void)cli;
   say_long(stream, outcome);
-  if (outcome->repair.unparted_vertices > 0)
-    fprintf(stream,
-            "  %" PRId64
-            " vertices share positions and could not be moved apart: the numbers of the file are too coarse\n"
-            "  there; write another format than .stl, or move the model to the origin\n",
-            outcome->repair.unparted_vertices);
+  say_unparted(stream, outcome);
   const vxm_verification *found = &outcome->verification;
   for (int i = 0; i < found->count; i++) {
     fprintf(stream, "  %-26s %12" PRId64, found->findings[i].what, found->findings[i].count);

@@ -224,13 +224,23 @@ static vxm_status wrap_crossing(vxm_repair_state *state, vxm_error *error) {
 }
 
 /** Runs a level that unites parts; where slivers are in the way, once more without the shortest edges, and on
- * coarser and coarser lattices. */
+ * coarser and coarser lattices. A surface that runs through itself touches itself where it comes to be wound
+ * the other way; at last what is wound so is left out, of which the check for losses tells.
+ */
 static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
   static const struct {
     int bits; /**< of the lattice; 0 = none */
-    bool collapses, doubles_only;
-  } tries[] = {{0, false, false}, {0, true, false},  {24, false, false}, {24, true, false},
-               {21, true, false}, {18, true, false}, {0, true, true},    {24, true, true}};
+    bool collapses, doubles_only, outward_only;
+  } tries[] = {{.bits = 0},
+               {.bits = 0, .collapses = true},
+               {.bits = 24},
+               {.bits = 24, .collapses = true},
+               {.bits = 21, .collapses = true},
+               {.bits = 18, .collapses = true},
+               {.bits = 0, .collapses = true, .doubles_only = true},
+               {.bits = 24, .collapses = true, .doubles_only = true},
+               {.bits = 0, .outward_only = true},
+               {.bits = 0, .collapses = true, .outward_only = true}};
   enum { TRIES = sizeof tries / sizeof *tries };
   vxm_before_union before = {.soup = NULL};
   bool short_of = true;
@@ -240,6 +250,7 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
       status = begin_again(state, &before, tries[i].bits, error);
     state->collapses = tries[i].collapses;
     state->doubles_only = tries[i].doubles_only;
+    state->outward_only = tries[i].outward_only;
     state->union_tries = i + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);
@@ -251,6 +262,7 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
     status = begin_again(state, &before, tries[0].bits, error);
     state->collapses = tries[0].collapses;
     state->doubles_only = tries[0].doubles_only;
+    state->outward_only = tries[0].outward_only;
     state->union_tries = TRIES + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);

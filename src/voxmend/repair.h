@@ -138,9 +138,9 @@ typedef struct vxm_repair_report {
   vxm_census *before;      /**< set by the caller: NULL, or where the census of the mesh that is given goes */
   vxm_census *after; /**< set by the caller: NULL, or where that of the result goes; each takes some time */
   int64_t emptied_parts; /**< closed components of which more than a hundredth of what they enclosed was taken
-                            away by a union: a surface that runs through itself, as a figure of eight, loses
-                            what it winds round the other way; and those within the
-                            bounds of a cavity that go with what this takes */
+                            away by a union, as of those
+                            within the bounds of a cavity
+                            that go with what this takes */
 } vxm_repair_report;
 
 /** Initial value of vxm_repair_report. */

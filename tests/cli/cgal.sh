@@ -56,6 +56,18 @@ say "# united again, nothing changes: two cubes meet along an edge, which a thir
 run 'voxmend repair edge.obj -o a.off --union | facts'
 run 'voxmend repair a.off -o b.off --union -q && cmp a.off b.off'
 
+# two octahedra that cut through themselves and each other: beside slivers of their union vertices stay together
+cat >crossed.off <<'END'
+OFF
+12 16 0
+0.5 0.75 0.75  1 0.75 1  0 0.5 1  0.75 1 0  0.5 0.25 0.5  0.5 0 0.25
+0.25 1 0.75  0.25 0.75 0.25  0.5 0.25 0  0.75 0.25 0.25  1 0.75 0.25  1 0.5 0.75
+3 4 0 1  3 5 1 0  3 4 1 2  3 5 2 1  3 4 2 3  3 5 3 2  3 4 3 0  3 5 0 3
+3 10 6 7  3 11 7 6  3 10 7 8  3 11 8 7  3 10 8 9  3 11 9 8  3 10 9 6  3 11 6 9
+END
+run 'voxmend repair crossed.off -o c.ply --level closed --union'
+run 'voxmend repair crossed.off -o c.ply --level solid | facts'
+
 say "# --level solid"
 run 'voxmend repair two.obj -o a.ply --force --level solid | facts'
 run 'voxmend repair two.obj -o a.stl --level solid | facts'

@@ -15,7 +15,8 @@ For each mesh and level:
  - the file repaired again at the same level is left as it is, but for the numbers of vertices;
  - the solid of the repaired mesh is that of the original, IoU at least 0.999 at 64^3, where that was closed and not repaired
    beyond recognition: no duplicate faces. Where faces cut through each other, what is inside follows from how often the
-   surface winds around a place: the solid (level solid) is where the mesh at level closed winds around it at least once.
+   surface winds around a place: the solid (level solid) is where the parts of the mesh at level closed do, those that are wound
+   outward in either direction.
 Each format is tried; the table tells of the first one. The last line counts. With --markdown the table between the marks of FILE is written anew.
 """
 import argparse, collections, json, os, re, subprocess, sys, tempfile
@@ -150,6 +151,39 @@ def complaint_of(parts, single):
     return None
 
 
+def volume_of(points, faces):
+    corners = numpy.array([(f[0], b, c) for f in faces for b, c in zip(f[1:-1], f[2:])])
+    a, b, c = (points[corners[:, k]] - points[corners[0, 0]] for k in range(3))
+    return numpy.einsum("ij,ij->", a, numpy.cross(b, c)) / 6
+
+
+def parts_of(faces):
+    """Lists of the faces that vertices connect."""
+    leader = {}
+
+    def find(v):
+        while leader.setdefault(v, v) != v:
+            leader[v] = v = leader[leader[v]]
+        return v
+
+    for face in faces:
+        for v in face[1:]:
+            leader[find(v)] = find(face[0])
+    parts = collections.defaultdict(list)
+    for face in faces:
+        parts[find(face[0])].append(face)
+    return list(parts.values())
+
+
+def united(points, faces, *grid):
+    """What parts enclose, either way if they are wound outward, less cavities."""
+    depth = 0
+    for part in parts_of(faces):
+        around = winding(points, part, *grid)
+        depth = depth + (abs(around) if volume_of(points, part) > 0 else around)
+    return depth > 0
+
+
 class Trial:
     def __init__(self, program, mesh, work, timeout):
         self.program, self.mesh, self.work, self.timeout = program, mesh, work, timeout
@@ -165,13 +199,13 @@ class Trial:
         return json.loads(self.run("compare", first, second, "--json").stdout)["iou"]
 
     def iou_of_winding(self, repaired):
-        """Of where the repaired mesh and the mesh at level closed wind around a place."""
+        """Of what the parts of the repaired mesh and of the mesh at level closed enclose."""
         closed, grid = (os.path.join(self.work, name) for name in ("closed.ply", "grid.npy"))
         self.run("repair", self.mesh, "--force", "-o", closed, "--level", "closed", "-q").check_returncode()
         self.run("voxelize", repaired, "-o", grid, "-r", "64", "--thin", "drop", "-q").check_returncode()
         with open(grid + ".json") as file:
             space = json.load(file)
-        first, second = (winding(*read_ply(path), space["origin"], space["voxel_size"], space["dims"]) > 0
+        first, second = (united(*read_ply(path), space["origin"], space["voxel_size"], space["dims"])
                          for path in (closed, repaired))
         either = (first | second).sum()
         return (first & second).sum() / either if either else 1.0  # thinner than the voxels

@@ -8,7 +8,7 @@
 static vxm_soup *unite(const vxm_soup *soup, uint64_t **origin, vxm_union_report *report) {
   vxm_soup *out;
   vxm_error error = VXM_ERROR_INIT;
-  if (cgal->unite(&out, origin, report, soup, &error) != VXM_OK)
+  if (cgal->unite(&out, origin, report, soup, false, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return out;
 }
@@ -544,31 +544,99 @@ static void nearly_coplanar(void **state) {
 
 /* ---- Parts that cut through themselves ---- */
 
+/** An octahedron with its corners anywhere, which may cut through itself, with most of its volume outward. */
+static vxm_soup *any_octahedron(vxm_rng *rng) {
+  vxm_soup *soup = new_soup(context);
+  for (int k = 0; k < 6; k++)
+    add_vertex(soup, vxm_rng_unit(rng), vxm_rng_unit(rng), vxm_rng_unit(rng));
+  for (uint32_t k = 0; k < 4; k++) {
+    add_triangle(soup, 4, k, (k + 1) % 4);
+    add_triangle(soup, 5, (k + 1) % 4, k);
+  }
+  if (volume_of(soup) < 0)
+    turn_faces(soup, 0);
+  return soup;
+}
+
+static void add_soup(vxm_soup *soup, const vxm_soup *part) {
+  uint32_t v = (uint32_t)soup->vertex_count;
+  for (size_t i = 0; i < part->vertex_count; i++)
+    add_vertex(soup, part->positions[3 * i], part->positions[3 * i + 1], part->positions[3 * i + 2]);
+  for (size_t f = 0; f < part->face_count; f++)
+    add_triangle(soup, v + part->indices[3 * f], v + part->indices[3 * f + 1], v + part->indices[3 * f + 2]);
+}
+
+/** The union is where one of them winds around a place, either way; returns how often it is the other way. */
+static int check_points(const vxm_soup *out, vxm_soup *const *parts, int64_t count, vxm_rng *rng) {
+  int other_way = 0;
+  for (int i = 0; i < 200; i++) {
+    double at[3] = {vxm_rng_unit(rng), vxm_rng_unit(rng), vxm_rng_unit(rng)};
+    bool inside = false, outward = false;
+    for (int64_t p = 0; p < count; p++) {
+      double winding = winding_at(parts[p], at);
+      inside = inside || fabs(winding) > 0.5;
+      outward = outward || winding > 0.5;
+    }
+    assert_true(fabs(winding_at(out, at) - inside) < 1e-6);
+    other_way += inside && !outward;
+  }
+  return other_way;
+}
+
 static void crossing_parts(void **state) {
   (void)state;
   vxm_rng rng = {6};
+  int other_way = 0;
   for (int round = 0; round < 20; round++) {
-    vxm_soup *soup = new_soup(context);
+    vxm_soup *soup = new_soup(context), *single[3];
     int64_t parts = 1 + round % 3;
     for (int64_t i = 0; i < parts; i++) {
-      uint32_t v = (uint32_t)soup->vertex_count;
-      for (int k = 0; k < 6; k++)
-        add_vertex(soup, vxm_rng_unit(&rng), vxm_rng_unit(&rng), vxm_rng_unit(&rng));
-      size_t face = soup->face_count;
-      for (uint32_t k = 0; k < 4; k++) {
-        add_triangle(soup, v + 4, v + k, v + (k + 1) % 4);
-        add_triangle(soup, v + 5, v + (k + 1) % 4, v + k);
-      }
-      double before = volume_of(soup);
-      turn_faces(soup, face);
-      if (volume_of(soup) < before)
-        turn_faces(soup, face);
+      single[i] = any_octahedron(&rng);
+      add_soup(soup, single[i]);
     }
     vxm_union_report report;
     vxm_soup *out = unite(soup, NULL, &report);
     assert_united(out);
     assert_int_equal(report.failed, 0);
-    assert_true(volume_of(out) > 0);
+    other_way += check_points(out, single, parts, &rng);
+    for (int64_t i = 0; i < parts; i++)
+      vxm_soup_destroy(single[i]);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(other_way > 20);
+}
+
+/** What lies in the half of a bow that is wound the other way is in it all the same, and a cavity is one. */
+static void in_a_bow(void **state) {
+  (void)state;
+  vxm_soup *soup = new_soup(context), *out;
+  add_bow(soup);
+  add_cuboid(soup, 0.2, 0.9, 0.2, 0.4, 1.1, 0.4);
+  add_hollow(soup, 0.2, 0.9, 0.6, 0.4, 1.1, 0.8);
+  vxm_union_report report;
+  out = unite(soup, NULL, &report);
+  assert_united(out);
+  assert_int_equal(report.failed, 0);
+  assert_int_equal(report.united, 1);
+  assert_true(fabs(volume_of(out) - (20.0 / 3 - 0.008)) < 1e-9);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+}
+
+/** A cavity around which nothing is stays, but for a crumb that rounding has left of another union. */
+static void crumbs(void **state) {
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    vxm_soup *soup = new_soup(context);
+    add_cuboid(soup, 0, 0, 0, 1, 1, 1);
+    const double size = i ? 0x1p-20 : 0x1p-24;
+    add_hollow(soup, 2 - size, 0, 0, 2, size, size);
+    vxm_union_report report;
+    vxm_soup *out = unite(soup, NULL, &report);
+    assert_int_equal(report.failed, i);
+    assert_int_equal(out->face_count, i ? 24 : 12);
+    vxm_free(context, report.failed_faces);
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
   }
@@ -674,7 +742,7 @@ static void cancelled(void **state) {
     uint64_t *origin;
     vxm_union_report report;
     vxm_error error = VXM_ERROR_INIT;
-    vxm_status status = cgal->unite(&out, &origin, &report, soup, &error);
+    vxm_status status = cgal->unite(&out, &origin, &report, soup, false, &error);
     done = status == VXM_OK;
     if (done) {
       vxm_soup_destroy(out);
@@ -707,7 +775,7 @@ static void too_little_memory(void **state) {
     for (size_t f = 0; f < large->face_count; f++)
       add_face(soup, large->indices + 3 * f, 3);
     vxm_error error = VXM_ERROR_INIT;
-    vxm_status status = cgal->unite(&out, NULL, NULL, soup, &error);
+    vxm_status status = cgal->unite(&out, NULL, NULL, soup, false, &error);
     done = status == VXM_OK;
     if (!done) {
       assert_int_equal(status, VXM_ERROR_MEMORY_LIMIT);
@@ -744,6 +812,8 @@ int main(void) {
       cmocka_unit_test(two_balls),
       cmocka_unit_test(nearly_coplanar),
       cmocka_unit_test(crossing_parts),
+      cmocka_unit_test(in_a_bow),
+      cmocka_unit_test(crumbs),
       cmocka_unit_test(a_loop),
       cmocka_unit_test(the_same_each_time),
       cmocka_unit_test(tags_are_kept),

@@ -18,7 +18,7 @@ public:
 
   bool inside(const std::vector<int> &windings) const override;
   bool measures() const override {
-    return !loose_.empty();
+    return true;
   }
   void begin_measure() override;
   void measure(const std::vector<int> &windings, double volume) override;
@@ -31,6 +31,7 @@ public:
   }
 
 private:
+  bool encloses(size_t solid, const std::vector<int> &windings) const;
   bool contains(size_t solid, size_t loose) const;
   bool is_within(size_t solid, size_t loose) const;
   bool in_cavity_of(size_t solid, const std::vector<int> &windings) const;
@@ -40,8 +41,10 @@ private:
   const std::vector<uint32_t> &group_;
   uint32_t body_;
   std::vector<size_t> solids_, hosted_,
-      loose_;                  /**< positions in the group: solids, cavities with and without host */
-  std::vector<double> volume_; /**< per part of the group: of where it is */
+      loose_;                     /**< positions in the group: solids, cavities with and without host */
+  std::vector<double> volume_;    /**< per part of the group: of where it is */
+  std::vector<double> other_way_; /**< the same, of where a solid is wound inward */
+  std::vector<bool> crumbly_;     /**< per part of the group: what is wound inward of it does not count */
   std::map<std::pair<size_t, size_t>, double> shared_; /**< of a loose cavity and a solid */
   std::vector<bool> contained_;                        /**< per loose cavity: by a solid of the group */
   std::vector<std::pair<size_t, size_t>> carves_;      /**< loose cavities and solids, sorted */

@@ -45,7 +45,7 @@ vxm_status orient(vxm_soup **out, int64_t *turned, const vxm_soup *soup, vxm_err
     *turned = 0;
   return guarded(soup->context, "looking for what lies inside of what", error, [&](Meter &meter) {
     Triangles triangles = triangles_of(soup, Naming::by_position, meter);
-    Parts parts = parts_of(soup, triangles, meter);
+    Parts parts = parts_of(soup, triangles, false, meter);
     std::vector<bool> turn = parts_to_turn(parts);
     vxm_soup *made;
     check(vxm_soup_copy(&made, soup, meter.error()));

@@ -40,8 +40,8 @@ private:
 
 class Builder {
 public:
-  Builder(const vxm_soup *soup, const Triangles &triangles, Meter &meter)
-      : soup_(soup), triangles_(triangles), meter_(meter) {
+  Builder(const vxm_soup *soup, const Triangles &triangles, bool outward_only, Meter &meter)
+      : soup_(soup), triangles_(triangles), outward_only_(outward_only), meter_(meter) {
   }
 
   Parts run() {
@@ -63,7 +63,7 @@ private:
     out_.of_face.resize(soup_->face_count);
     size_t count = 0;
     check(vxm_components(meter_.context(), soup_, nullptr, out_.of_face.data(), &count, meter_.error()));
-    out_.parts.assign(count, Part{false, 0, 0, UINT64_MAX, 0});
+    out_.parts.assign(count, Part{false, 0, 0, UINT64_MAX, 0, outward_only_});
     for (size_t f = soup_->face_count; f-- > 0;)
       out_.parts[out_.of_face[f]].first_face = f;
   }
@@ -190,7 +190,7 @@ private:
         for (end = begin; end < hits[r].size() && hits[r][end].first == hits[r][begin].first; end++)
           winding += hits[r][end].second;
         uint32_t part = hits[r][begin].first;
-        if (winding * out_.parts[part].sign > 0 && part != parts[r])
+        if (out_.parts[part].encloses(winding) && part != parts[r])
           out[r].push_back(part);
       }
     }
@@ -234,6 +234,7 @@ private:
 
   const vxm_soup *soup_;
   const Triangles &triangles_;
+  bool outward_only_;
   Meter &meter_;
   Parts out_;
   std::vector<uint32_t> leader_, solid_;
@@ -244,8 +245,8 @@ private:
 
 } // namespace
 
-Parts parts_of(const vxm_soup *soup, const Triangles &triangles, Meter &meter) {
-  return Builder(soup, triangles, meter).run();
+Parts parts_of(const vxm_soup *soup, const Triangles &triangles, bool outward_only, Meter &meter) {
+  return Builder(soup, triangles, outward_only, meter).run();
 }
 
 } // namespace vxm

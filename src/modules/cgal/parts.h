@@ -16,6 +16,14 @@ struct Part {
   uint32_t group;
   uint64_t first_face; /**< of the soup */
   double volume;       /**< absolute */
+  bool outward_only;
+
+  /** Whether a place lies inside, by how often the part winds around it. What runs through itself and is
+   * wound the other way somewhere encloses that, too, unless it is outward_only; a cavity is only what is
+   * wound inward. */
+  bool encloses(int winding) const {
+    return winding * sign > 0 || (sign > 0 && winding < 0 && !outward_only);
+  }
 };
 
 /** Parts with a sign that are connected by touching; other parts are alone. */
@@ -35,7 +43,8 @@ struct Parts {
   std::vector<uint32_t> host;
 };
 
-Parts parts_of(const vxm_soup *soup, const Triangles &triangles, Meter &meter);
+/** @param outward_only for all parts */
+Parts parts_of(const vxm_soup *soup, const Triangles &triangles, bool outward_only, Meter &meter);
 
 } // namespace vxm
 

@@ -2,6 +2,7 @@
 #include "modules/cgal/functions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <numeric>
@@ -22,8 +23,12 @@ enum class Fate {
   kept,    /**< as it is */
   covered, /**< all of it lies in the material of other parts */
   rebuilt, /**< the surface of its union is in the result */
-  failed   /**< kept as it is, because nothing else could be done */
+  failed,  /**< kept as it is, because nothing else could be done */
+  crumb    /**< left out: what is thinner than numbers tell, turned inside out by rounding */
 };
+
+/** Of the largest coordinate: a cavity without a solid around it that is no larger is a crumb of a union. */
+constexpr double CRUMB = 0x1p-22;
 
 /** Takes the parts of a soup once and unites those that touch. */
 class Union {
@@ -123,10 +128,23 @@ private:
     if (!bodies.empty() && !cavity_of_body)
       return Fate::covered;
     if (bodies.empty() && only_cavities)
-      return Fate::failed;
+      return is_crumb(g) ? Fate::crumb : Fate::failed;
     if (group.parts.size() == 1 && !group.meets)
       return Fate::kept;
     return rebuild(g, bodies.empty() ? NO_PART : bodies[0]);
+  }
+
+  bool is_crumb(uint32_t g) const {
+    double largest = 0, size = 0;
+    const Position &first = triangles_.points[triangles_.corners[triangles_of_group_[g][0]][0]];
+    for (const Position &p : triangles_.points)
+      for (double x : p)
+        largest = std::max(largest, std::abs(x));
+    for (uint32_t t : triangles_of_group_[g])
+      for (uint32_t point : triangles_.corners[t])
+        for (size_t axis = 0; axis < 3; axis++)
+          size = std::max(size, std::abs(triangles_.points[point][axis] - first[axis]));
+    return size <= CRUMB * largest;
   }
 
   Fate rebuild(uint32_t g, uint32_t body) {
@@ -181,7 +199,8 @@ private:
  */
 class Passes {
 public:
-  Passes(const vxm_soup *soup, Meter &meter) : soup_(soup), meter_(meter), origin_(soup->face_count) {
+  Passes(const vxm_soup *soup, bool outward_only, Meter &meter)
+      : soup_(soup), outward_only_(outward_only), meter_(meter), origin_(soup->face_count) {
     std::iota(origin_.begin(), origin_.end(), UINT64_C(0));
   }
 
@@ -189,7 +208,7 @@ public:
     for (int pass = 0; pass < PASSES; pass++) {
       const vxm_soup *now = made_ != nullptr ? made_.get() : soup_;
       Triangles triangles = triangles_of(now, Naming::by_position, meter_);
-      Parts parts = parts_of(now, triangles, meter_);
+      Parts parts = parts_of(now, triangles, outward_only_, meter_);
       if (pass == 0)
         start(parts);
       else if (std::none_of(parts.groups.begin(), parts.groups.end(), [](const Group &g) { return g.meets; }))
@@ -263,6 +282,7 @@ private:
   }
 
   const vxm_soup *soup_;
+  bool outward_only_;
   Meter &meter_;
   Owner made_;
   std::vector<uint64_t> origin_;
@@ -273,7 +293,7 @@ private:
 } // namespace
 
 vxm_status unite(vxm_soup **out, uint64_t **origin, vxm_union_report *report, const vxm_soup *soup,
-                 vxm_error *error) {
+                 bool outward_only, vxm_error *error) {
   *out = nullptr;
   if (origin != nullptr)
     *origin = nullptr;
@@ -281,7 +301,7 @@ vxm_status unite(vxm_soup **out, uint64_t **origin, vxm_union_report *report, co
   vxm_union_report *told = report != nullptr ? report : &local;
   *told = vxm_union_report();
   return guarded(soup->context, "looking for parts that touch", error, [&](Meter &meter) {
-    Passes passes(soup, meter);
+    Passes passes(soup, outward_only, meter);
     passes.run();
     passes.finish(out, origin, told);
   });

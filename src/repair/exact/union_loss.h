@@ -6,10 +6,9 @@
 #include "mesh/soup.h"
 
 /**
- * Counts the closed components of which more than a hundredth of what they enclosed is enclosed no more: a
- * surface that runs through itself and winds round a part of its inside the other way, as a figure of eight
- * does, loses that. What a cavity takes from the body that it cuts through is not lost, but what
- * goes of a body whose box lies within that of the cavity is.
+ * Counts the closed components of which more than a hundredth of what they enclosed is enclosed no more. What
+ * a cavity takes from the body that it cuts through is not lost, but what goes of a body whose box lies
+ * within that of the cavity is.
  *
  * @return as vxm_lost_parts_find
  */

@@ -59,11 +59,14 @@ typedef struct vxm_cgal {
    * Unites the closed components of a soup (those whose edges are passed as often in one direction as in the
    * other) into the surface of their union. The others, and those without a volume, stay as they are.
    *
-   * A component that is wound outward is solid where it winds around a place at least once. One that is wound
-   * inward is a cavity of the smallest solid that it lies inside of without touching it. Where there is none
-   * it is one of those that it lies inside of and touches, but for a ten-thousandth of it; where these are
-   * none, too, it is subtracted from all that it touches but from those that lie in it; where it touches
-   * nothing it is left as it is and counted as failed.
+   * A component that is wound outward is solid where it winds around a place, in whichever direction: what
+   * runs through itself loses nothing. But what it winds round inward is left out if that is no more than a
+   * thousandth of it, or with `outward_only`. One that
+   * is wound inward is a cavity of the smallest solid that it lies inside of without touching it. Where there
+   * is none it is one of those that it lies inside of and touches, but for a ten-thousandth of it; where
+   * these are none, too, it is subtracted from all that it touches but from those that lie in it; where it
+   * touches nothing it is left as it is and counted as failed, or, no larger than 2^-22 of the largest
+   * coordinate, left out: rounding has turned it over.
    *
    * The surface is cut exactly and then rounded to doubles; no two of its faces meet elsewhere than in
    * corners and edges they share, and none is without area. Where doubles cannot hold that, the parts
@@ -73,7 +76,7 @@ typedef struct vxm_cgal {
    * keep their faces and vertices, and come in the order of their faces.
    */
   vxm_status (*unite)(vxm_soup **out, uint64_t **origin, vxm_union_report *report, const vxm_soup *soup,
-                      vxm_error *error);
+                      bool outward_only, vxm_error *error);
   /**
    * Turns the closed components of a soup so that together they bound a volume: outward, but against the
    * smallest one around that they do not touch. The others stay as they are. *turned counts faces.

@@ -87,6 +87,7 @@ typedef struct vxm_repair_state {
   int64_t union_tries;    /**< how often parts were united */
   int64_t wrapped_parts;  /**< parts that were wrapped as the union had left them */
   bool collapses;         /**< the shortest edges of unions are collapsed */
+  bool outward_only;      /**< unions leave out what parts wind round the other way */
   bool doubles_only;      /**< vertices are not to differ as 32-bit floats: that would have faces meet */
   int64_t self_intersections[2]; /**< before and after, or -1 */
   int64_t unparted_vertices;     /**< vertices that were to be moved apart and could not be */
