@@ -9,6 +9,7 @@
 
 #include "mesh/geometry.h"
 #include "repair/repair.h"
+#include "voxmend.h"
 
 #include <math.h>
 

@@ -8,6 +8,7 @@
 #include "../mesh/soups.h"
 
 #include "repair/repair.h"
+#include "voxmend.h"
 
 enum { SIDE = 8, AROUND = 2, CELLS = SIDE + 2 * AROUND, BOXES_MAX = 2 };
 
