@@ -87,13 +87,6 @@ static vxm_voxelize_options without_thin(const vxm_voxelize_options *options) {
   return centres;
 }
 
-/** Whether a part is wound against the body that it lies in, which is not so itself. */
-static bool is_cavity(const vxm_containment *inside, uint32_t part) {
-  const uint32_t around = inside->parent[part];
-  return around != VXM_NO_COMPONENT && (inside->volume[part] < 0) != (inside->volume[around] < 0) &&
-         !is_cavity(inside, around);
-}
-
 /** Takes away what parts claim that are cavities. */
 static void drop_cavities(vxm_grid **claims, const vxm_face_labels *l) {
   const size_t count = l->table.count;
@@ -118,7 +111,7 @@ static void drop_cavities(vxm_grid **claims, const vxm_face_labels *l) {
   vxm_containment inside;
   assert_int_equal(vxm_containment_build(&inside, l->soup, part, count, closed, NULL), VXM_OK);
   for (size_t c = 0; c < count; c++)
-    if (is_cavity(&inside, (uint32_t)c)) {
+    if (inside.body[c] != VXM_NO_COMPONENT) {
       vxm_grid_destroy(claims[c]);
       claims[c] = NULL;
     }

@@ -36,7 +36,7 @@ vxm_status vxm_cl_each_slab(vxm_engine *base, const vxm_window *window, bool is_
     status = vxm_cl_return_end(engine, &back[which], status, error);
     vxm_progress_part before = vxm_slab_progress(&slab);
     if (status == VXM_OK)
-      status = make(base, &slab, back[which].from, payload, error);
+      status = make(base, &slab, (int)back[which].from, payload, error);
     vxm_progress_leave(before);
     back[which].slab = slab;
     back[which].is_or = is_or;

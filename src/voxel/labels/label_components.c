@@ -263,51 +263,22 @@ static vxm_status find_parts(builder *b) {
   return find_open(b);
 }
 
-/**
- * Which parts are skins of cavities: those that are wound against the body around them. What lies in a cavity
- * is a body again.
- *
- * @param chain room for as many numbers as there are parts
- */
-static void find_cavities(const vxm_containment *inside, bool *is_cavity, bool *is_known, uint32_t *chain) {
-  for (size_t p = 0; p < inside->count; p++) {
-    size_t length = 0;
-    for (uint32_t at = (uint32_t)p; at != VXM_NO_COMPONENT && !is_known[at]; at = inside->parent[at])
-      chain[length++] = at;
-    while (length-- > 0) { /* from the outermost on */
-      const uint32_t part = chain[length], around = inside->parent[part];
-      is_cavity[part] = around != VXM_NO_COMPONENT && !is_cavity[around] &&
-                        (inside->volume[part] < 0) != (inside->volume[around] < 0);
-      is_known[part] = true;
-    }
-  }
-}
-
 /** A part that is the skin of a cavity claims nothing: what stands in the cavity is not its own. */
 static vxm_status empty_cavities(builder *b) {
-  vxm_context *context = b->soup->context;
-  vxm_containment inside = {.context = NULL};
   vxm_status status = find_parts(b);
-  uint8_t *is_solid = allocate(b, b->body_count, sizeof *is_solid);
-  bool *is_cavity = allocate(b, b->body_count, sizeof *is_cavity);
-  bool *is_known = allocate(b, b->body_count, sizeof *is_known);
-  uint32_t *chain = allocate(b, b->body_count, sizeof *chain);
-  if (status == VXM_OK && is_solid && is_cavity && is_known && chain) {
-    for (size_t p = 0; p < b->body_count; p++)
-      is_solid[p] = !b->bodies[p].is_open;
-    status = vxm_containment_build(&inside, b->soup, b->component, b->body_count, is_solid, &b->error);
-  }
-  if (b->error.code == VXM_OK)
-    find_cavities(&inside, is_cavity, is_known, chain);
-  for (size_t p = 0; p < b->body_count && b->error.code == VXM_OK; p++)
-    if (is_cavity[p])
+  uint8_t *is_solid = status == VXM_OK ? allocate(b, b->body_count, sizeof *is_solid) : NULL;
+  if (!is_solid)
+    return b->error.code;
+  for (size_t p = 0; p < b->body_count; p++)
+    is_solid[p] = !b->bodies[p].is_open;
+  vxm_containment inside;
+  status = vxm_containment_build(&inside, b->soup, b->component, b->body_count, is_solid, &b->error);
+  for (size_t p = 0; p < b->body_count && status == VXM_OK; p++)
+    if (inside.body[p] != VXM_NO_COMPONENT)
       b->out->pieces[p].face_end = b->out->pieces[p].first_face;
   vxm_containment_destroy(&inside);
-  vxm_free(context, chain);
-  vxm_free(context, is_known);
-  vxm_free(context, is_cavity);
-  vxm_free(context, is_solid);
-  return b->error.code;
+  vxm_free(b->soup->context, is_solid);
+  return status;
 }
 
 /* ---- Boxes ---- */
