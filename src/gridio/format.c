@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/octree_build.h"
+#include "gridio/common/deflate.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/slices.h"
 #include "gridio/formats/zarr.h"
@@ -165,7 +166,7 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
   if (!format)
     format = vxm_grid_format_of_path(path);
   *out = format;
-  if (!format && input->size >= 2 && memcmp(input->data, "\x1f\x8b", 2) == 0)
+  if (!format && vxm_is_gzip(input))
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
                        "compressed by gzip: unpack it first, or read a .nii.gz from a file of that name");
   if (!format)

@@ -5,6 +5,10 @@
 
 #include "mesh/edges.h"
 
+/** A component whose caps, over all of its loops, would have at least this part of its area is a sheet rather
+ * than a body with holes: they would only cover it a second time. */
+#define VXM_SHEET_PART 0.75
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -32,6 +32,18 @@ const double *vxm_caps_position(const vxm_caps *caps, uint32_t vertex) {
   return vertex < known ? vxm_position(caps->soup, vertex) : caps->points[vertex - known];
 }
 
+double vxm_caps_area(const vxm_caps *caps, size_t first, size_t end) {
+  double area = 0;
+  for (size_t t = first; t < end; t++) {
+    const uint32_t *v = caps->triangles[t];
+    const double *origin = vxm_caps_position(caps, v[0]);
+    vxm_vec3 u = vxm_vec3_between(vxm_caps_position(caps, v[1]), origin, caps->scale);
+    vxm_vec3 w = vxm_vec3_between(vxm_caps_position(caps, v[2]), origin, caps->scale);
+    area += vxm_vec3_length(vxm_vec3_cross(u, w)) / 2;
+  }
+  return area;
+}
+
 void vxm_caps_destroy(vxm_caps *caps) {
   vxm_context *context = caps->soup->context;
   vxm_free(context, caps->triangles);

@@ -39,6 +39,8 @@ vxm_status vxm_caps_add(vxm_caps *caps, const vxm_boundary_loops *loops, size_t 
                         vxm_error *error);
 /** Position of a vertex of the soup or a new one. */
 const double *vxm_caps_position(const vxm_caps *caps, uint32_t vertex);
+/** The area of some of the triangles, scaled. */
+double vxm_caps_area(const vxm_caps *caps, size_t first, size_t end);
 void vxm_caps_destroy(vxm_caps *caps);
 
 #endif

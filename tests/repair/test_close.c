@@ -279,7 +279,7 @@ static void random_soups(void **state) {
     check_closing(soup, NULL, &again);
     vxm_soup_destroy(soup);
   }
-  assert_true(again <= ROUNDS(1500) / 250);
+  assert_true(again <= ROUNDS(1500) / 750);
 }
 
 /** Boxes on a coarse lattice that touch, lack faces and have others added: the middle of a rim is often

@@ -34,6 +34,11 @@ size_t vxm_deflate_bound(size_t size);
 vxm_status vxm_deflate_block(vxm_context *context, void *out, size_t *size, const void *data,
                              size_t data_size, vxm_error *error);
 
+/** Whether a file begins as gzip's do. */
+static inline bool vxm_is_gzip(const vxm_input *input) {
+  return input->size >= 2 && input->data[0] == 0x1f && input->data[1] == 0x8b;
+}
+
 /** Compressed bytes of a file, from an offset on; of a gzip file all its members. */
 typedef struct vxm_inflater vxm_inflater;
 

@@ -30,10 +30,6 @@ static vxm_status take_bytes(void *payload, void *to, size_t size, vxm_error *er
   return VXM_OK;
 }
 
-static bool is_gzip(const vxm_input *input) {
-  return input->size >= 2 && input->data[0] == 0x1f && input->data[1] == 0x8b;
-}
-
 /** Reads the header, and leaves the source behind it. */
 static vxm_status take_header(vxm_nifti_header *h, byte_source *s, vxm_error *error) {
   unsigned char data[VXM_NIFTI_2] = {0};
@@ -92,7 +88,7 @@ static vxm_status read_values(vxm_field **out, vxm_nifti_header *h, byte_source 
 /** @param out NULL: only the header is read, for its space */
 static vxm_status read_file(vxm_field **out, vxm_nifti_header *h, const vxm_input *input, vxm_error *error) {
   byte_source s = {.input = input};
-  vxm_status status = is_gzip(input) ? vxm_inflater_create(&s.inflater, input, 0, error) : VXM_OK;
+  vxm_status status = vxm_is_gzip(input) ? vxm_inflater_create(&s.inflater, input, 0, error) : VXM_OK;
   *h = (vxm_nifti_header){.data = 0};
   if (status == VXM_OK)
     status = take_header(h, &s, error);

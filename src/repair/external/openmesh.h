@@ -3,7 +3,7 @@
 #ifndef VXM_REPAIR_EXTERNAL_OPENMESH_H
 #define VXM_REPAIR_EXTERNAL_OPENMESH_H
 
-#include "mesh/soup.h"
+#include "mesh/boundary_loops.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -46,8 +46,6 @@ typedef struct vxm_openmesh {
   vxm_status (*fill)(vxm_soup **out, uint64_t **origin, int64_t *filled, int64_t *left, const vxm_soup *soup,
                      size_t max_edges, vxm_error *error);
 } vxm_openmesh;
-
-#define VXM_SHEET_PART 0.75
 
 /** Opens the module. @return VXM_OK, VXM_ERROR_UNAVAILABLE */
 vxm_status vxm_openmesh_open(const vxm_openmesh **out, const char *purpose, vxm_error *error);

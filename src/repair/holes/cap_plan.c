@@ -113,18 +113,6 @@ void vxm_cap_plan_pass(vxm_cap_plan *p, size_t loop) {
   p->points[loop + 1] = p->caps.point_count;
 }
 
-double vxm_cap_plan_area(const vxm_cap_plan *p, size_t loop) {
-  double area = 0;
-  for (size_t t = p->triangles[loop]; t < p->triangles[loop + 1]; t++) {
-    const uint32_t *v = p->caps.triangles[t];
-    const double *origin = vxm_caps_position(&p->caps, v[0]);
-    vxm_vec3 u = vxm_vec3_between(vxm_caps_position(&p->caps, v[1]), origin, p->scale);
-    vxm_vec3 w = vxm_vec3_between(vxm_caps_position(&p->caps, v[2]), origin, p->scale);
-    area += 0.5 * vxm_vec3_length(vxm_vec3_cross(u, w));
-  }
-  return area;
-}
-
 /* ---- New vertices: none may have the position of another one, or welding would merge them ---- */
 
 /** Moves a taken position a little and a little more toward a vertex, until it is free. */

@@ -6,10 +6,6 @@
 #include "mesh/caps.h"
 #include "repair/state/repair_state.h"
 
-/** Caps covering at least this part of the faces beside them lay these double: what they would close is a
-   sheet. The solid has the same bound (voxel/parts/parts.c). */
-#define VXM_SHEET_PART 0.75
-
 typedef struct vxm_cap_plan {
   vxm_repair_state *state;
   vxm_soup *soup;
@@ -51,6 +47,8 @@ bool vxm_cap_plan_take(vxm_cap_plan *p, const uint32_t (*triangles)[3], size_t c
 /** The next loop has the triangles that were added since, or none. */
 void vxm_cap_plan_pass(vxm_cap_plan *p, size_t loop);
 /** The area of a cap. */
-double vxm_cap_plan_area(const vxm_cap_plan *p, size_t loop);
+static inline double vxm_cap_plan_area(const vxm_cap_plan *p, size_t loop) {
+  return vxm_caps_area(&p->caps, p->triangles[loop], p->triangles[loop + 1]);
+}
 
 #endif

@@ -9,10 +9,6 @@
 
 #include <string.h>
 
-/** Area of the caps against that of the component, above which it is a sheet rather than a body with holes.
- */
-static const double capped_part_max = 0.75;
-
 /** What is needed while parts are numbered. */
 typedef struct builder {
   vxm_split *split;
@@ -95,14 +91,7 @@ static vxm_status make_caps(builder *b, double scale, double *area) {
     if (status != VXM_OK)
       return status;
     s->cap_begin[l + 1] = s->caps.triangle_count;
-    double cap = 0;
-    for (size_t t = s->cap_begin[l]; t < s->cap_begin[l + 1]; t++) {
-      const uint32_t *v = s->caps.triangles[t];
-      const double *p = vxm_caps_position(&s->caps, v[0]);
-      vxm_vec3 u = vxm_vec3_between(vxm_caps_position(&s->caps, v[1]), p, scale);
-      vxm_vec3 w = vxm_vec3_between(vxm_caps_position(&s->caps, v[2]), p, scale);
-      cap += vxm_vec3_length(vxm_vec3_cross(u, w)) / 2;
-    }
+    double cap = vxm_caps_area(&s->caps, s->cap_begin[l], s->cap_begin[l + 1]);
     double *widest = &b->openings[b->loop_component[l]].widest_cap;
     area[b->loop_component[l]] += cap;
     *widest = cap > *widest ? cap : *widest;
@@ -126,7 +115,7 @@ static vxm_status find_lone_sheets(builder *b, const double *area) {
   for (size_t c = 0; c < s->component_count; c++) {
     vxm_opening *o = &b->openings[c];
     o->open = b->kind[c] == VXM_PART_OPEN;
-    o->lone = o->open && area[c] > 0 && o->widest_cap >= capped_part_max * area[c];
+    o->lone = o->open && area[c] > 0 && o->widest_cap >= VXM_SHEET_PART * area[c];
     any |= o->lone;
   }
   if (!any)
@@ -167,7 +156,7 @@ static vxm_status find_kinds(builder *b) {
   for (size_t l = 0; l < s->loops.count; l++)
     b->kind[b->loop_component[l]] = VXM_PART_OPEN;
   for (size_t c = 0; c < s->component_count; c++)
-    if (measure && b->kind[c] == VXM_PART_OPEN && caps[c] < capped_part_max * area[c])
+    if (measure && b->kind[c] == VXM_PART_OPEN && caps[c] < VXM_SHEET_PART * area[c])
       b->kind[c] = VXM_PART_CAPPED;
   if (measure && status == VXM_OK)
     status = find_lone_sheets(b, area);
