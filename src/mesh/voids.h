@@ -5,6 +5,10 @@
 
 #include "base/context.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define VXM_NO_COMPONENT UINT32_MAX
 
 /** What is known of the components of a soup. */
@@ -44,5 +48,9 @@ typedef struct vxm_void_search {
  * some where there are very many.
  */
 vxm_status vxm_voids_find(uint32_t *body, const vxm_void_search *search, vxm_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

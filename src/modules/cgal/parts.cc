@@ -8,6 +8,7 @@
 
 #include "mesh/components.h"
 #include "mesh/edges.h"
+#include "mesh/voids.h"
 #include "modules/cgal/rays.h"
 
 namespace vxm {
@@ -36,6 +37,85 @@ public:
 
 private:
   vxm_edges edges_;
+};
+
+/** Gives every part that is wound inward the one that it is a cavity of (mesh/voids.h). */
+class Hosts {
+public:
+  /**
+   * @param solid  parts that bound a volume, the smallest first
+   * @param around per part: those that it lies inside of without touching them, in that order
+   */
+  Hosts(Parts &parts, const std::vector<uint32_t> &solid, std::vector<std::vector<uint32_t>> around,
+        const std::set<std::pair<uint32_t, uint32_t>> &touching, Meter &meter)
+      : parts_(parts), solid_(solid), around_(std::move(around)), touching_(touching), meter_(meter) {
+  }
+
+  void run() {
+    size_t count = parts_.parts.size();
+    std::vector<uint32_t> parent(count, VXM_NO_COMPONENT), body(count);
+    std::vector<double> volume(count, 0);
+    for (uint32_t part : solid_) {
+      volume[part] = parts_.parts[part].sign * parts_.parts[part].volume;
+      if (!around_[part].empty())
+        parent[part] = around_[part][0];
+    }
+    vxm_void_search search = {};
+    search.context = meter_.context();
+    search.count = count;
+    search.order = solid_.data();
+    search.order_count = solid_.size();
+    search.parent = parent.data();
+    search.volume = volume.data();
+    search.list_around = list_around;
+    search.may_have_several = [](void *payload, uint32_t part) {
+      return static_cast<Hosts *>(payload)->around_[part].size() > 1;
+    };
+    search.may_overlap = [](void *payload, uint32_t a, uint32_t b) {
+      return static_cast<Hosts *>(payload)->overlap(a, b);
+    };
+    search.payload = this;
+    check(vxm_voids_find(body.data(), &search, meter_.error()));
+    for (uint32_t part : solid_)
+      if (parts_.parts[part].sign < 0)
+        parts_.host[part] = body[part] != VXM_NO_COMPONENT ? body[part] : smallest_outward(part);
+  }
+
+private:
+  static vxm_status list_around(void *payload, uint32_t part, uint32_t **around, size_t *count,
+                                vxm_error *error) {
+    Hosts *hosts = static_cast<Hosts *>(payload);
+    const std::vector<uint32_t> &list = hosts->around_[part];
+    *count = list.size();
+    *around =
+        static_cast<uint32_t *>(vxm_alloc(hosts->meter_.context(), list.size(), sizeof **around, error));
+    if (*around == nullptr)
+      return error->code;
+    std::copy(list.begin(), list.end(), *around);
+    return VXM_OK;
+  }
+
+  bool overlap(uint32_t a, uint32_t b) const {
+    return touching_.count(std::minmax(a, b)) != 0 || lies_in(a, b) || lies_in(b, a);
+  }
+
+  bool lies_in(uint32_t part, uint32_t other) const {
+    return std::find(around_[part].begin(), around_[part].end(), other) != around_[part].end();
+  }
+
+  /** Of the parts around one. */
+  uint32_t smallest_outward(uint32_t part) const {
+    for (uint32_t other : around_[part])
+      if (parts_.parts[other].sign > 0)
+        return other;
+    return NO_PART;
+  }
+
+  Parts &parts_;
+  const std::vector<uint32_t> &solid_;
+  std::vector<std::vector<uint32_t>> around_;
+  const std::set<std::pair<uint32_t, uint32_t>> &touching_;
+  Meter &meter_;
 };
 
 class Builder {
@@ -216,20 +296,33 @@ private:
 
   void find_hosts() {
     out_.host.assign(out_.parts.size(), NO_PART);
-    std::vector<uint32_t> inward;
+    std::vector<uint32_t> solid;
+    bool is_some_inward = false;
     for (uint32_t p = 0; p < out_.parts.size(); p++)
-      if (out_.parts[p].sign < 0)
-        inward.push_back(p);
-    if (inward.empty())
+      if (out_.parts[p].sign != 0) {
+        solid.push_back(p);
+        is_some_inward = is_some_inward || out_.parts[p].sign < 0;
+      }
+    if (!is_some_inward)
       return;
-    std::vector<std::vector<uint32_t>> around = parts_around(inward);
-    for (size_t i = 0; i < inward.size(); i++) {
-      uint32_t *host = &out_.host[inward[i]];
-      for (uint32_t part : around[i])
-        if (out_.parts[part].sign > 0 && touching_.count(std::minmax(part, inward[i])) == 0 &&
-            (*host == NO_PART || out_.parts[part].volume < out_.parts[*host].volume))
-          *host = part;
+    std::stable_sort(solid.begin(), solid.end(),
+                     [this](uint32_t a, uint32_t b) { return out_.parts[a].volume < out_.parts[b].volume; });
+    Hosts(out_, solid, around_untouched(solid), touching_, meter_).run();
+  }
+
+  /** For each part, those that it lies inside of without touching them, in the order of the parts given. */
+  std::vector<std::vector<uint32_t>> around_untouched(const std::vector<uint32_t> &solid) {
+    std::vector<uint32_t> place(out_.parts.size());
+    for (uint32_t i = 0; i < solid.size(); i++)
+      place[solid[i]] = i;
+    std::vector<std::vector<uint32_t>> around = parts_around(solid), out(out_.parts.size());
+    for (size_t i = 0; i < solid.size(); i++) {
+      std::copy_if(around[i].begin(), around[i].end(), std::back_inserter(out[solid[i]]),
+                   [&](uint32_t part) { return touching_.count(std::minmax(part, solid[i])) == 0; });
+      std::sort(out[solid[i]].begin(), out[solid[i]].end(),
+                [&](uint32_t a, uint32_t b) { return place[a] < place[b]; });
     }
+    return out;
   }
 
   const vxm_soup *soup_;

@@ -38,8 +38,8 @@ struct Parts {
   std::vector<Part> parts;
   std::vector<uint32_t> of_face; /**< of the soup */
   std::vector<Group> groups;
-  /** Per part: for one that is wound inward, the smallest outward one that it lies inside of without touching
-   * it; else NO_PART. */
+  /** Per part: for one that is wound inward, the outward one that it is a cavity of (mesh/voids.h), out of
+   * those that it lies inside of without touching them; else NO_PART. */
   std::vector<uint32_t> host;
 };
 
