@@ -27,8 +27,18 @@ enum class Fate {
   crumb    /**< left out: what is thinner than numbers tell, turned inside out by rounding */
 };
 
-/** Of the largest coordinate: a cavity without a solid around it that is no larger is a crumb of a union. */
+/** Of the largest coordinate: a cavity without a solid around it that is no thicker is a crumb of a union. */
 constexpr double CRUMB = 0x1p-22;
+
+double area_of(const std::vector<Position> &points, const Corners &corners) {
+  std::array<double, 3> across;
+  for (size_t k = 0; k < 3; k++) {
+    const Position &a = points[corners[0]], &b = points[corners[1]], &c = points[corners[2]];
+    size_t v = (k + 1) % 3, w = (k + 2) % 3;
+    across[k] = (b[v] - a[v]) * (c[w] - a[w]) - (b[w] - a[w]) * (c[v] - a[v]);
+  }
+  return std::hypot(across[0], across[1], across[2]) / 2;
+}
 
 /** Takes the parts of a soup once and unites those that touch. */
 class Union {
@@ -39,6 +49,14 @@ public:
         fates_(parts.groups.size(), Fate::kept), altered_(parts.parts.size()) {
     for (uint32_t t = 0; t < triangles.corners.size(); t++)
       triangles_of_group_[group_of(triangles.face[t])].push_back(t);
+  }
+
+  /** Whether rounding has left some that are to be left out. */
+  bool has_crumbs() const {
+    for (uint32_t g = 0; g < parts_.groups.size(); g++)
+      if (has_only_cavities(parts_.groups[g]) && is_crumb(g))
+        return true;
+    return false;
   }
 
   void run() {
@@ -120,31 +138,34 @@ private:
     if (parts_.parts[group.parts[0]].sign == 0)
       return Fate::kept;
     std::vector<uint32_t> bodies = bodies_around(group);
-    bool cavity_of_body = false, only_cavities = true;
-    for (uint32_t part : group.parts) {
-      only_cavities = only_cavities && parts_.parts[part].sign < 0;
+    bool cavity_of_body = false;
+    for (uint32_t part : group.parts)
       cavity_of_body = cavity_of_body || (bodies.size() == 1 && parts_.host[part] == bodies[0]);
-    }
     if (!bodies.empty() && !cavity_of_body)
       return Fate::covered;
-    if (bodies.empty() && only_cavities)
+    if (bodies.empty() && has_only_cavities(group))
       return is_crumb(g) ? Fate::crumb : Fate::failed;
     if (group.parts.size() == 1 && !group.meets)
       return Fate::kept;
     return rebuild(g, bodies.empty() ? NO_PART : bodies[0]);
   }
 
+  bool has_only_cavities(const Group &group) const {
+    return std::all_of(group.parts.begin(), group.parts.end(),
+                       [this](uint32_t part) { return parts_.parts[part].sign < 0; });
+  }
+
+  /** How thick a body is, tells its volume for its surface: six times that of a cube is its side. */
   bool is_crumb(uint32_t g) const {
-    double largest = 0, size = 0;
-    const Position &first = triangles_.points[triangles_.corners[triangles_of_group_[g][0]][0]];
+    double largest = 0, area = 0, volume = 0;
     for (const Position &p : triangles_.points)
       for (double x : p)
         largest = std::max(largest, std::abs(x));
     for (uint32_t t : triangles_of_group_[g])
-      for (uint32_t point : triangles_.corners[t])
-        for (size_t axis = 0; axis < 3; axis++)
-          size = std::max(size, std::abs(triangles_.points[point][axis] - first[axis]));
-    return size <= CRUMB * largest;
+      area += area_of(triangles_.points, triangles_.corners[t]);
+    for (uint32_t part : parts_.groups[g].parts)
+      volume += parts_.parts[part].volume;
+    return 6 * volume <= CRUMB * largest * area;
   }
 
   Fate rebuild(uint32_t g, uint32_t body) {
@@ -209,11 +230,13 @@ public:
       const vxm_soup *now = made_ != nullptr ? made_.get() : soup_;
       Triangles triangles = triangles_of(now, Naming::by_position, meter_);
       Parts parts = parts_of(now, triangles, outward_only_, meter_);
+      Union step(now, triangles, parts, meter_);
       if (pass == 0)
         start(parts);
-      else if (std::none_of(parts.groups.begin(), parts.groups.end(), [](const Group &g) { return g.meets; }))
+      else if (std::none_of(parts.groups.begin(), parts.groups.end(),
+                            [](const Group &g) { return g.meets; }) &&
+               !step.has_crumbs())
         return;
-      Union step(now, triangles, parts, meter_);
       step.run();
       note(parts, step);
       std::vector<uint64_t> origin;
