@@ -250,7 +250,8 @@ class VoxelizeReport(Record):
         empty_parts, outside_parts: that set no voxel, within the grid or because they lie outside of it.
         thin_voxels: added because parts are thinner than one; thin_share: of the surface that needed them, 0 to 1.
         self_overlapping_parts: that run through themselves, and are filled where parity would leave them hollow;
-            hollow_overlaps: that seem to, but are left hollow, as their faces are wound against each other.
+            hollow_overlaps: that seem to, but are left hollow, as their faces are wound against each other;
+            filled_overlaps: with cavities that overlap each other, where what these share is filled.
         components: pieces that share vertices, of which the parts are made; those that stay open are one part together.
         fill_ms, write_ms: of what is written to a file.
         engine: what made the voxels, such as "cpu" or "opencl:0"; engine_note: why it was taken in place of another.
@@ -274,6 +275,7 @@ class VoxelizeReport(Record):
     components: int = 0
     self_overlapping_parts: int = 0
     hollow_overlaps: int = 0
+    filled_overlaps: int = 0
     engine: str = ""
     engine_note: str = ""
 

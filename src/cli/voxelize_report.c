@@ -66,6 +66,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "self_overlapping_parts",
                       json_integer(results->voxelize.self_overlapping_parts));
   json_object_set_new(report, "hollow_overlaps", json_integer(results->voxelize.hollow_overlaps));
+  json_object_set_new(report, "filled_overlaps", json_integer(results->voxelize.filled_overlaps));
   json_object_set_new(report, "empty_parts", json_integer(results->voxelize.empty_parts));
   json_object_set_new(report, "outside_parts", json_integer(results->voxelize.outside_parts));
   json_object_set_new(report, "votes", votes);

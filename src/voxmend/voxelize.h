@@ -167,11 +167,13 @@ typedef struct vxm_voxelize_report {
                                      and without a solid */
   int64_t hollow_overlaps; /**< those that seem to, but whose faces are wound against each other, so that they
                               are left hollow there; 0 as self_overlapping_parts is */
+  int64_t filled_overlaps; /**< parts with cavities that overlap each other, where what these share is filled;
+                              0 as self_overlapping_parts is */
 } vxm_voxelize_report;
 
 /** Initial value of vxm_voxelize_report. */
 #define VXM_VOXELIZE_REPORT_INIT \
-  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0, 0.0, 0, 0, 0 }
+  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0, 0.0, 0, 0, 0, 0 }
 
 /**
  * Voxelizes the inside of a mesh: voxel (i,j,k) is set where its centre is inside, and where parts thinner

@@ -103,8 +103,31 @@ static void overlapping(void **state) {
   }
 }
 
+/** Two voids in one box: what they share is filled by parity, which is told. */
+static void voids_of_one_body(void **state) {
+  for (int shift = 0; shift < 6; shift++) {
+    const hollow_box whole = {{{0, 2, 6, 14}, {0, 2, 6, 14}, {0, 2, 6, 14}}},
+                     other = {{{0, 3 + shift, 8 + shift, 14}, {0, 3, 7, 14}, {0, 3, 7, 14}}};
+    vxm_soup *soup = new_soup(*state);
+    vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+    vxm_space_options place = VXM_SPACE_OPTIONS_INIT;
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    vxm_grid *grid;
+    add_skin(soup, &whole, false, shift % 2 == 1);
+    add_skin(soup, &whole, true, shift % 2 == 0);
+    add_skin(soup, &other, true, shift % 2 == 0);
+    for (int method = 0; method < 2; method++) {
+      options.method = method ? VXM_METHOD_WINDING : VXM_METHOD_VOTE;
+      assert_int_equal(vxm_voxelize(&grid, &report, soup, &place, &options, NULL), VXM_OK);
+      assert_int_equal(report.filled_overlaps, method == 0 && 3 + shift < 6);
+      vxm_grid_destroy(grid);
+    }
+    vxm_soup_destroy(soup);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_liner_in_a_vessel), cmocka_unit_test(nested),
-                                     cmocka_unit_test(overlapping)};
+                                     cmocka_unit_test(overlapping), cmocka_unit_test(voids_of_one_body)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -170,6 +170,23 @@ static void warn_of_hollow_overlaps(vxm_model_pass *pass, const vxm_voxelize_rep
       at[0], at[1], at[2]);
 }
 
+/** Of what parity fills though it lies in two cavities. */
+static void warn_of_filled_overlaps(vxm_model_pass *pass, const vxm_voxelize_report *report) {
+  if (report->filled_overlaps == 0)
+    return;
+  const vxm_triangle_set *triangles = &pass->solid.analysis->triangles;
+  const vxm_self_overlap *overlap = &pass->solid.analysis->self_overlap;
+  const double *at =
+      triangles->positions[triangles->corners[triangles->parts[overlap->filled_part].begin][0]];
+  bool one = report->filled_overlaps == 1;
+  vxm_warn(pass->warnings,
+           "%" PRId64 " of %" PRId64 " parts ha%s cavities that overlap each other, and what these share is "
+           "filled: some %s%.2g %% of that at (%.4g, %.4g, %.4g); --method winding leaves it empty, "
+           "'voxmend repair --level solid' unites the cavities",
+           report->filled_overlaps, report->parts, one ? "s" : "ve", one ? "" : "up to ",
+           100 * overlap->filled_share, at[0], at[1], at[2]);
+}
+
 static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
   vxm_warnings *warnings = pass->warnings;
   bool faces = vxm_faces_wanted(&pass->solid.options);
@@ -189,6 +206,7 @@ static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
   if (engine && engine->falls_back && !engine->ops)
     vxm_warn(warnings, "%s", engine->info.note);
   warn_of_hollow_overlaps(pass, report);
+  warn_of_filled_overlaps(pass, report);
   if (report->contested > 0)
     warn_of_open(pass, report);
 }
@@ -213,6 +231,9 @@ void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t
                                     : 0,
       .hollow_overlaps = vxm_fills_overlaps(&pass->solid.options)
                              ? (int64_t)pass->solid.analysis->self_overlap.hollow_count
+                             : 0,
+      .filled_overlaps = vxm_fills_overlaps(&pass->solid.options)
+                             ? (int64_t)pass->solid.analysis->self_overlap.filled_count
                              : 0,
       .thin_voxels = pass->is_field ? 0 : pass->thin.thin.added};
   if (pass->thin.thin.area > 0)

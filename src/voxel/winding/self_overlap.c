@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/self_overlap.h"
+#include "mesh/disjoint_sets.h"
 #include "voxel/winding/probe_lines.h"
 
 #include <math.h>
@@ -38,6 +39,7 @@ typedef struct finder {
   double length;              /**< wound around at all */
   double inside;              /**< length times number */
   double twice_out, twice_in; /**< lengths wound 2, 4, ... and -2, -4, ... times */
+  double odd_out, odd_in;     /**< lengths wound 1, 3, ... and -1, -3, ... times */
   vxm_error error;
 } finder;
 
@@ -226,8 +228,10 @@ static void follow(finder *f, const crossing *at, size_t count, double weight) {
     double length = wound ? weight * (at[i].at - at[i - 1].at) : 0;
     f->length += length;
     f->inside += wound * length;
-    if (wound % 2 == 0)
-      *(wound > 0 ? &f->twice_out : &f->twice_in) += length;
+    double *kind = wound % 2 == 0 ? &f->twice_in : &f->odd_in;
+    if (wound > 0)
+      kind = wound % 2 == 0 ? &f->twice_out : &f->odd_out;
+    *kind += length;
     wound += at[i].sign;
   }
 }
@@ -236,7 +240,7 @@ static void follow_all(finder *f) {
   const vxm_probe_places *columns = &f->places[(f->along + 1) % 3], *rows = &f->places[(f->along + 2) % 3];
   size_t line = 0, begin = 0;
   f->contradicted = false;
-  f->length = f->inside = f->twice_out = f->twice_in = 0;
+  f->length = f->inside = f->twice_out = f->twice_in = f->odd_out = f->odd_in = 0;
   for (int row = 0; row < rows->count; row++)
     for (int column = 0; column < columns->count; column++, line++) {
       size_t count = f->ends[line] - begin;
@@ -264,6 +268,57 @@ static void tell_of_hollow(vxm_self_overlap *out, const finder *f, size_t part) 
     out->hollow_share = share;
     out->hollow_part = part;
   }
+}
+
+/** Six times the volume of the cone from a corner of a part to a triangle of it. */
+static double cone_of(const finder *f, const double *tip, const uint32_t k[3]) {
+  double p[3][3];
+  for (int i = 0; i < 3; i++)
+    for (int a = 0; a < 3; a++)
+      p[i][a] = position(f, k[i])[a] - tip[a];
+  return p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
+         p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
+         p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+}
+
+/** How many components of a part, joined by points, are wound against what most of it is wound like. */
+static vxm_status count_cavities(size_t *count, finder *f, size_t begin, size_t end, points range) {
+  vxm_context *context = f->triangles->context;
+  uint32_t(*corners)[3] = f->triangles->corners;
+  size_t point_count = range.end - range.begin;
+  uint32_t *set = vxm_alloc(context, point_count, sizeof *set, &f->error);
+  double *volume = vxm_calloc(context, point_count, sizeof *volume, &f->error);
+  *count = 0;
+  for (size_t i = 0; set && volume && i < point_count; i++)
+    set[i] = (uint32_t)i;
+  for (size_t t = begin; set && volume && t < end; t++)
+    for (int k = 1; k < 3; k++)
+      vxm_set_unite_in_order(set, corners[t][0] - range.begin, corners[t][k] - range.begin);
+  for (size_t t = begin; set && volume && t < end; t++)
+    volume[vxm_set_of_u32(set, corners[t][0] - range.begin)] +=
+        cone_of(f, position(f, range.begin), corners[t]);
+  for (size_t i = 0; set && volume && i < point_count; i++)
+    *count += volume[i] * f->inside < 0;
+  vxm_free(context, volume);
+  vxm_free(context, set);
+  return f->error.code;
+}
+
+/** A part that is wound against itself: whether that comes of cavities that overlap. */
+static vxm_status tell_of_filled(vxm_self_overlap *out, finder *f, size_t part, size_t begin, size_t end) {
+  double against = f->inside < 0 ? f->odd_out : f->odd_in;
+  size_t cavities;
+  if (f->contradicted || !(against > told * f->length))
+    return VXM_OK;
+  vxm_status status = count_cavities(&cavities, f, begin, end, points_of(f->triangles, part));
+  double share = against / f->length;
+  if (status != VXM_OK || cavities < 2)
+    return status;
+  if (out->filled_count++ == 0 || share > out->filled_share) {
+    out->filled_share = share;
+    out->filled_part = part;
+  }
+  return VXM_OK;
 }
 
 /* ---- The chain ---- */
@@ -313,7 +368,9 @@ static vxm_status look_at_part(vxm_self_overlap *out, finder *f, size_t part) {
   if (begin == end)
     return VXM_OK;
   points range = points_of(f->triangles, part);
-  int even = (int)fmin(sqrt((double)(end - begin)) / 4 + 4, VXM_PROBE_EVEN) / 2 * 2;
+  /* Of few triangles those of cavities are large, and may meet in a small place. */
+  double wanted = f->triangles->split.cavity_count > 0 ? VXM_PROBE_EVEN : sqrt((double)(end - begin)) / 4 + 4;
+  int even = (int)fmin(wanted, VXM_PROBE_EVEN) / 2 * 2;
   vxm_status status = VXM_OK;
   do {
     if (!lay_lines(f, range, even))
@@ -332,7 +389,7 @@ static vxm_status look_at_part(vxm_self_overlap *out, finder *f, size_t part) {
     status = add_part(out, f, part, begin, end);
   if (out->part_count == added)
     tell_of_hollow(out, f, part);
-  return status;
+  return status == VXM_OK ? tell_of_filled(out, f, part, begin, end) : status;
 }
 
 vxm_status vxm_self_overlap_find(vxm_self_overlap *out, const vxm_triangle_set *triangles, vxm_error *error) {

@@ -17,6 +17,10 @@ typedef struct vxm_self_overlap {
   size_t hollow_count; /**< parts that seem to lie in themselves, too, but of which no chain can be made */
   size_t hollow_part;  /**< that of them which does so most */
   double hollow_share; /**< and how much of what lines run inside of it is wound twice */
+  size_t
+      filled_count; /**< parts with cavities that overlap each other, so that parity fills what they share */
+  size_t filled_part;  /**< that of them which does so most */
+  double filled_share; /**< and how much that is of what lines run inside of */
 } vxm_self_overlap;
 
 /**
@@ -27,7 +31,8 @@ typedef struct vxm_self_overlap {
  * through what is wound twice, or more often, for more than 10^-5 of what they run inside of; so one that
  * overlaps itself in a small place only may be passed over. Its faces must be wound consistently, as a repair
  * leaves them where it can: a wall of two skins that face the same way is wound twice as well, and hollow.
- * Where they are not, it is only counted if it seems to be wound twice for more than 1/500.
+ * Where they are not, it is only counted if it seems to be wound twice for more than 1/500. So is a part with
+ * two cavities or more that is wound against itself, as where cavities overlap, for more than that.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; to be destroyed in any case.
  * Takes time linear in the number of triangles
