@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Callable, List, Optional, Tuple, Type
+from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Type
 
 import numpy
 
@@ -158,6 +158,14 @@ class VoxelGrid(Placed, Shown):
         return int(lib.vxm_grid_count(self._pointer))
 
     @property
+    def filled_box(self) -> Optional[Int64s]:
+        """(2, 3) int64: the first indices of the smallest box that has all set voxels, and those behind its last ones; None
+        if no voxel is set. `begin, end = grid.filled_box`, then `grid.matrix[tuple(map(slice, begin, end))]` is the box."""
+        out = numpy.empty((2, 3), numpy.int64)
+        begin, end = (_core.pointer("int64_t *", ends) for ends in out)
+        return out if lib.vxm_grid_box(begin, end, self._pointer) else None
+
+    @property
     def volume(self) -> float:
         """Of the set voxels, model units cubed."""
         return self.filled_count * float(numpy.prod(self.pitch))
@@ -269,26 +277,28 @@ class VoxelGrid(Placed, Shown):
 
     # ---- Sets ----
 
-    def _combined(self, other: object, operation: Callable[[Uint64s, Uint64s], Uint64s], word: str) -> "VoxelGrid":
+    def _combined(self, other: object, operation: int, word: str) -> "VoxelGrid":
         if not isinstance(other, VoxelGrid):
             raise KindError("%s: %s is not a VoxelGrid" % (word, type(other).__name__))
         self._need_space_of(other, word)
-        return VoxelGrid._of_words(operation(self.packed, other.packed), self._own_space)
+        return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_grid_combine, self._pointer, other._pointer, operation,
+                                          destroy=lib.vxm_grid_destroy))
 
     def __or__(self, other: "VoxelGrid") -> "VoxelGrid":
-        return self._combined(other, numpy.bitwise_or, "or")
+        return self._combined(other, lib.VXM_SET_UNION, "or")
 
     def __and__(self, other: "VoxelGrid") -> "VoxelGrid":
-        return self._combined(other, numpy.bitwise_and, "and")
+        return self._combined(other, lib.VXM_SET_INTERSECTION, "and")
 
     def __sub__(self, other: "VoxelGrid") -> "VoxelGrid":
-        return self._combined(other, lambda a, b: a & ~b, "minus")
+        return self._combined(other, lib.VXM_SET_DIFFERENCE, "minus")
 
     def __xor__(self, other: "VoxelGrid") -> "VoxelGrid":
-        return self._combined(other, numpy.bitwise_xor, "xor")
+        return self._combined(other, lib.VXM_SET_SYMMETRIC_DIFFERENCE, "xor")
 
     def __invert__(self) -> "VoxelGrid":
-        return VoxelGrid._of_words(~self.packed, self._own_space)
+        return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_grid_combine, self._pointer, ffi.NULL, lib.VXM_SET_COMPLEMENT,
+                                          destroy=lib.vxm_grid_destroy))
 
     def carve(self, tool: "MeshLike", path: ArrayLike, *, repair: bool = True) -> "VoxelGrid":
         """What a tool leaves that moves along a path: every voxel is removed whose centre comes to lie within it, at any time.

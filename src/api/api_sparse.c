@@ -10,8 +10,6 @@
 #include "gridio/sparse_write.h"
 #include "voxel/sparse/sparse.h"
 
-#include <inttypes.h>
-
 vxm_status vxm_model_sparse(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
                             const vxm_space *space, const double transform[12], vxm_error *error) {
   if (out)
@@ -83,24 +81,6 @@ vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, vxm_erro
   vxm_window window = vxm_window_of_grid(*out);
   vxm_octree_fill(sparse, &window);
   return VXM_OK;
-}
-
-vxm_status vxm_sparse_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_sparse *b,
-                              vxm_set_operation operation, vxm_error *error) {
-  if (out)
-    *out = NULL;
-  if (!out || !a || (!b && operation != VXM_SET_COMPLEMENT))
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  if ((int)operation < VXM_SET_UNION || (int)operation > VXM_SET_COMPLEMENT)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: operation %d is unknown", (int)operation);
-  for (int i = 0; i < 3 && operation != VXM_SET_COMPLEMENT; i++)
-    if (a->space.dims[i] != b->space.dims[i])
-      return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                      "sparse: sets of %" PRId64 " x %" PRId64 " x %" PRId64 " and %" PRId64 " x %" PRId64
-                      " x %" PRId64 " voxels cannot be combined",
-                      a->space.dims[0], a->space.dims[1], a->space.dims[2], b->space.dims[0],
-                      b->space.dims[1], b->space.dims[2]);
-  return vxm_octree_combine(out, a, b, operation, error);
 }
 
 void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload) {

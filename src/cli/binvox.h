@@ -36,31 +36,17 @@ typedef struct binvox_request {
 int binvox_read_arguments(cli_run *cli, binvox_request *out);
 void binvox_print_help(void);
 
-/** A grid in memory that is changed as a whole; rows are those of vxm_grid_words, with nothing set beyond
- * their ends. */
-typedef struct binvox_bits {
-  vxm_space space;
-  int64_t row_words;
-  uint64_t *words;
-} binvox_bits;
-
-/* Each replaces the content; false where memory is lacking. */
-bool binvox_bits_read(binvox_bits *out, const vxm_grid *grid);
-void binvox_bits_free(binvox_bits *bits);
-bool binvox_bits_get(const binvox_bits *bits, int64_t i, int64_t j, int64_t k);
+/* What is done with the voxels. Each returns CLI_FAILED after a line. */
 /** Sets what no straight line along an axis leads to from outside. */
-bool binvox_carve(binvox_bits *bits);
+int binvox_carve(cli_run *cli, vxm_grid *grid);
 /** Sets the six neighbours of each voxel too. */
-bool binvox_dilate(binvox_bits *bits);
+int binvox_dilate(cli_run *cli, vxm_grid *grid);
 /** Clears voxels whose six neighbours are set. */
-bool binvox_remove_internal(binvox_bits *bits);
+int binvox_remove_internal(cli_run *cli, vxm_grid *grid);
 /** Makes one voxel of 2 x 2 x 2, set where `least` of them are. */
-bool binvox_halve(binvox_bits *bits, int64_t least);
-/** First and last voxel that is set along each axis; false if none is. */
-bool binvox_box(int64_t low[3], int64_t high[3], const binvox_bits *bits);
+int binvox_halve(cli_run *cli, vxm_grid **grid, int64_t least);
 /** Keeps the box of the voxels that are set alone; as it is where none is. */
-bool binvox_crop(binvox_bits *bits);
-int64_t binvox_count(const binvox_bits *bits);
+int binvox_crop(cli_run *cli, vxm_grid **grid);
 
 /** The block of each voxel before it is halved and cropped, x fastest; 0 = none of its own, and of several
  * that meet in a voxel the highest. */
@@ -78,7 +64,7 @@ void binvox_blocks_free(binvox_blocks *blocks);
 unsigned char binvox_block_at(const binvox_blocks *blocks, const vxm_space *space, const int64_t at[3]);
 
 /** Writes a file of any type; a failure is in cli->error. */
-vxm_status binvox_write(cli_run *cli, const binvox_request *given, const binvox_bits *bits,
+vxm_status binvox_write(cli_run *cli, const binvox_request *given, const vxm_grid *grid,
                         const binvox_blocks *blocks, const char *path);
 
 #endif

@@ -3,79 +3,49 @@
 #include "cli/binvox.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-static int64_t rows_of(const binvox_bits *bits) {
-  return bits->space.dims[1] * bits->space.dims[2];
+static int64_t rows_of(const vxm_grid *grid) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
+  return dims[1] * dims[2];
 }
 
-static size_t words_of(const binvox_bits *bits) {
-  return (size_t)(bits->row_words * rows_of(bits));
+static size_t words_of(const vxm_grid *grid) {
+  return (size_t)(vxm_grid_row_words(grid) * rows_of(grid));
 }
 
 /** Row (j,k), or one without voxels where there is none. */
-static const uint64_t *row_at(const binvox_bits *bits, const uint64_t *none, int64_t j, int64_t k) {
-  const int64_t *dims = bits->space.dims;
+static const uint64_t *row_at(const vxm_grid *grid, const uint64_t *none, int64_t j, int64_t k) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
   if (j < 0 || k < 0 || j >= dims[1] || k >= dims[2])
     return none;
-  return bits->words + (k * dims[1] + j) * bits->row_words;
+  return vxm_grid_words(grid) + (k * dims[1] + j) * vxm_grid_row_words(grid);
 }
 
-/** The bits of word w of a row that are voxels. */
-static uint64_t mask_of(const binvox_bits *bits, int64_t w) {
-  int64_t rest = bits->space.dims[0] - 64 * w;
-  return rest >= 64 ? UINT64_MAX : (UINT64_C(1) << rest) - 1;
+static int lack(cli_run *cli) {
+  return cli_fail_text(cli, "out of memory for the voxels: free some, or lower -d");
 }
 
-static bool allocate(binvox_bits *out, const vxm_space *space) {
-  *out = (binvox_bits){.space = *space, .row_words = (space->dims[0] + 63) / 64};
-  out->words = calloc(words_of(out) + 1, sizeof *out->words); /* cannot be too many: as many were in a grid */
-  return out->words != NULL;
-}
-
-static void replace(binvox_bits *bits, const binvox_bits *by) {
-  free(bits->words);
-  *bits = *by;
-}
-
-bool binvox_bits_read(binvox_bits *out, const vxm_grid *grid) {
-  if (!allocate(out, vxm_grid_space(grid)))
-    return false;
-  memcpy(out->words, vxm_grid_words(grid), words_of(out) * sizeof *out->words);
-  return true;
-}
-
-void binvox_bits_free(binvox_bits *bits) {
-  free(bits->words);
-  bits->words = NULL;
-}
-
-bool binvox_bits_get(const binvox_bits *bits, int64_t i, int64_t j, int64_t k) {
-  const int64_t *dims = bits->space.dims;
-  return i >= 0 && i < dims[0] && j >= 0 && j < dims[1] && k >= 0 && k < dims[2] &&
-         (bits->words[(k * dims[1] + j) * bits->row_words + i / 64] >> (i % 64) & 1);
-}
-
-int64_t binvox_count(const binvox_bits *bits) {
-  int64_t count = 0;
-  for (size_t w = 0; w < words_of(bits); w++)
-    count += __builtin_popcountll(bits->words[w]);
-  return count;
+/** Replaces all voxels, and frees the words. */
+static int replace(cli_run *cli, vxm_grid *grid, uint64_t *words) {
+  vxm_status status = vxm_grid_set_words(grid, words, words_of(grid), &cli->error);
+  free(words);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
 /* ---- Carving ---- */
 
 /** Marks what is seen along x: all before the first voxel of a row that is set, and behind the last. */
-static void see_along_x(binvox_bits *seen, const binvox_bits *bits) {
-  for (int64_t row = 0; row < rows_of(bits); row++) {
-    const uint64_t *in = bits->words + row * bits->row_words;
-    uint64_t *out = seen->words + row * bits->row_words;
-    int64_t first = 0, last = bits->row_words - 1;
-    for (; first < bits->row_words && in[first] == 0; first++)
+static void see_along_x(uint64_t *seen, const vxm_grid *grid) {
+  const int64_t words = vxm_grid_row_words(grid);
+  for (int64_t row = 0; row < rows_of(grid); row++) {
+    const uint64_t *in = vxm_grid_words(grid) + row * words;
+    uint64_t *out = seen + row * words;
+    int64_t first = 0, last = words - 1;
+    for (; first < words && in[first] == 0; first++)
       out[first] = UINT64_MAX;
     for (; last > first && in[last] == 0; last--)
       out[last] = UINT64_MAX;
-    if (first == bits->row_words)
+    if (first == words)
       continue;
     out[first] |= (in[first] & -in[first]) - 1;
     int top = 63 - __builtin_clzll(in[last]);
@@ -97,134 +67,97 @@ static void see_column(uint64_t *seen, const uint64_t *words, int64_t count, int
   }
 }
 
-bool binvox_carve(binvox_bits *bits) {
-  const int64_t *dims = bits->space.dims;
-  int64_t row = bits->row_words, slice = row * dims[1];
-  binvox_bits seen;
-  if (!allocate(&seen, &bits->space))
-    return false;
-  see_along_x(&seen, bits);
+int binvox_carve(cli_run *cli, vxm_grid *grid) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
+  const uint64_t *words = vxm_grid_words(grid);
+  int64_t row = vxm_grid_row_words(grid), slice = row * dims[1];
+  uint64_t *seen = calloc(words_of(grid), sizeof *seen);
+  if (!seen)
+    return lack(cli);
+  see_along_x(seen, grid);
   for (int64_t k = 0; k < dims[2]; k++)
     for (int64_t w = 0; w < row; w++)
-      see_column(seen.words + k * slice + w, bits->words + k * slice + w, dims[1], row);
+      see_column(seen + k * slice + w, words + k * slice + w, dims[1], row);
   for (int64_t w = 0; w < slice; w++)
-    see_column(seen.words + w, bits->words + w, dims[2], slice);
-  for (size_t w = 0; w < words_of(bits); w++)
-    bits->words[w] = ~seen.words[w] & mask_of(bits, (int64_t)w % row);
-  binvox_bits_free(&seen);
-  return true;
+    see_column(seen + w, words + w, dims[2], slice);
+  for (size_t w = 0; w < words_of(grid); w++)
+    seen[w] = ~seen[w];
+  return replace(cli, grid, seen);
 }
 
 /* ---- Neighbours ---- */
 
 /** Dilation sets the voxels of which one of the six neighbours, or the voxel itself, is set; else the voxels
  * are kept that have an empty neighbour. */
-static bool combine_neighbours(binvox_bits *bits, bool is_dilation) {
-  const int64_t *dims = bits->space.dims;
-  binvox_bits made;
-  uint64_t *none = calloc((size_t)bits->row_words, sizeof *none);
-  if (!none || !allocate(&made, &bits->space)) {
+static int combine_neighbours(cli_run *cli, vxm_grid *grid, bool is_dilation) {
+  const int64_t *dims = vxm_grid_space(grid)->dims, words = vxm_grid_row_words(grid);
+  uint64_t *made = calloc(words_of(grid), sizeof *made), *none = calloc((size_t)words, sizeof *none);
+  if (!made || !none) {
     free(none);
-    return false;
+    free(made);
+    return lack(cli);
   }
   for (int64_t k = 0; k < dims[2]; k++)
     for (int64_t j = 0; j < dims[1]; j++) {
-      const uint64_t *row = row_at(bits, none, j, k);
-      const uint64_t *a = row_at(bits, none, j - 1, k), *b = row_at(bits, none, j + 1, k);
-      const uint64_t *c = row_at(bits, none, j, k - 1), *d = row_at(bits, none, j, k + 1);
-      uint64_t *out = made.words + (k * dims[1] + j) * bits->row_words;
-      for (int64_t w = 0; w < bits->row_words; w++) {
+      const uint64_t *row = row_at(grid, none, j, k);
+      const uint64_t *a = row_at(grid, none, j - 1, k), *b = row_at(grid, none, j + 1, k);
+      const uint64_t *c = row_at(grid, none, j, k - 1), *d = row_at(grid, none, j, k + 1);
+      uint64_t *out = made + (k * dims[1] + j) * words;
+      for (int64_t w = 0; w < words; w++) {
         uint64_t left = row[w] << 1 | (w > 0 ? row[w - 1] >> 63 : 0);
-        uint64_t right = row[w] >> 1 | (w + 1 < bits->row_words ? row[w + 1] << 63 : 0);
-        out[w] = is_dilation ? (row[w] | left | right | a[w] | b[w] | c[w] | d[w]) & mask_of(bits, w)
+        uint64_t right = row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0);
+        out[w] = is_dilation ? row[w] | left | right | a[w] | b[w] | c[w] | d[w]
                              : row[w] & ~(left & right & a[w] & b[w] & c[w] & d[w]);
       }
     }
   free(none);
-  replace(bits, &made);
-  return true;
+  return replace(cli, grid, made);
 }
 
-bool binvox_dilate(binvox_bits *bits) {
-  return combine_neighbours(bits, true);
+int binvox_dilate(cli_run *cli, vxm_grid *grid) {
+  return combine_neighbours(cli, grid, true);
 }
 
-bool binvox_remove_internal(binvox_bits *bits) {
-  return combine_neighbours(bits, false);
+int binvox_remove_internal(cli_run *cli, vxm_grid *grid) {
+  return combine_neighbours(cli, grid, false);
 }
 
 /* ---- Other sizes ---- */
 
-static int count_eight(const binvox_bits *bits, int64_t i, int64_t j, int64_t k) {
+static int count_eight(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
   int count = 0;
   for (int n = 0; n < 8; n++)
-    count += binvox_bits_get(bits, 2 * i + (n & 1), 2 * j + (n >> 1 & 1), 2 * k + (n >> 2));
+    count += vxm_grid_get(grid, 2 * i + (n & 1), 2 * j + (n >> 1 & 1), 2 * k + (n >> 2));
   return count;
 }
 
-bool binvox_halve(binvox_bits *bits, int64_t least) {
-  vxm_space space = bits->space;
+int binvox_halve(cli_run *cli, vxm_grid **grid, int64_t least) {
+  vxm_space space = *vxm_grid_space(*grid);
   for (int axis = 0; axis < 3; axis++) {
     space.dims[axis] = (space.dims[axis] + 1) / 2;
     space.voxel_size[axis] *= 2;
   }
-  binvox_bits made;
-  if (!allocate(&made, &space))
-    return false;
+  vxm_grid *made;
+  if (vxm_grid_create(&made, cli->context, &space, &cli->error) != VXM_OK)
+    return cli_fail(cli);
   for (int64_t k = 0; k < space.dims[2]; k++)
     for (int64_t j = 0; j < space.dims[1]; j++)
       for (int64_t i = 0; i < space.dims[0]; i++)
-        if (count_eight(bits, i, j, k) >= least)
-          made.words[(k * space.dims[1] + j) * made.row_words + i / 64] |= UINT64_C(1) << (i % 64);
-  replace(bits, &made);
-  return true;
+        if (count_eight(*grid, i, j, k) >= least)
+          vxm_grid_set(made, i, j, k, true);
+  vxm_grid_destroy(*grid);
+  *grid = made;
+  return CLI_DONE;
 }
 
-static void widen(int64_t low[3], int64_t high[3], int axis, int64_t at) {
-  low[axis] = at < low[axis] ? at : low[axis];
-  high[axis] = at > high[axis] ? at : high[axis];
-}
-
-bool binvox_box(int64_t low[3], int64_t high[3], const binvox_bits *bits) {
-  for (int axis = 0; axis < 3; axis++) {
-    low[axis] = bits->space.dims[axis];
-    high[axis] = -1;
-  }
-  for (int64_t row = 0; row < rows_of(bits); row++)
-    for (int64_t w = 0; w < bits->row_words; w++) {
-      uint64_t word = bits->words[row * bits->row_words + w];
-      if (word == 0)
-        continue;
-      widen(low, high, 0, 64 * w + __builtin_ctzll(word));
-      widen(low, high, 0, 64 * w + 63 - __builtin_clzll(word));
-      widen(low, high, 1, row % bits->space.dims[1]);
-      widen(low, high, 2, row / bits->space.dims[1]);
-    }
-  return high[0] >= 0;
-}
-
-bool binvox_crop(binvox_bits *bits) {
-  int64_t low[3], high[3];
-  vxm_space space = bits->space;
-  if (!binvox_box(low, high, bits))
-    return true;
-  for (int axis = 0; axis < 3; axis++) {
-    space.dims[axis] = high[axis] - low[axis] + 1;
-    space.origin[axis] += (double)low[axis] * space.voxel_size[axis];
-  }
-  binvox_bits made;
-  if (!allocate(&made, &space))
-    return false;
-  int64_t first = low[0] / 64, shift = low[0] % 64;
-  for (int64_t k = 0; k < space.dims[2]; k++)
-    for (int64_t j = 0; j < space.dims[1]; j++) {
-      const uint64_t *in = row_at(bits, NULL, j + low[1], k + low[2]);
-      uint64_t *out = made.words + (k * space.dims[1] + j) * made.row_words;
-      for (int64_t w = 0; w < made.row_words; w++) {
-        uint64_t upper = shift && first + w + 1 < bits->row_words ? in[first + w + 1] << (64 - shift) : 0;
-        out[w] = (in[first + w] >> shift | upper) & mask_of(&made, w);
-      }
-    }
-  replace(bits, &made);
-  return true;
+int binvox_crop(cli_run *cli, vxm_grid **grid) {
+  int64_t begin[3], end[3];
+  vxm_grid *made;
+  if (!vxm_grid_box(begin, end, *grid))
+    return CLI_DONE;
+  if (vxm_grid_window(&made, *grid, begin, end, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  vxm_grid_destroy(*grid);
+  *grid = made;
+  return CLI_DONE;
 }

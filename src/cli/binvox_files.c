@@ -59,37 +59,36 @@ static vxm_status write_buffer(cli_run *cli, buffer *out, const char *path) {
 
 /* ---- Bytes ---- */
 
-static unsigned char value_at(const binvox_bits *bits, unsigned char value, const binvox_blocks *blocks,
+static unsigned char value_at(const vxm_grid *grid, unsigned char value, const binvox_blocks *blocks,
                               const int64_t at[3]) {
-  unsigned char own = blocks && blocks->ids ? binvox_block_at(blocks, &bits->space, at) : 0;
+  unsigned char own = blocks && blocks->ids ? binvox_block_at(blocks, vxm_grid_space(grid), at) : 0;
   return own ? own : value;
 }
 
 /** All voxels as a byte each, with the axes in this order, the slowest first. */
-static void put_voxels(buffer *out, const binvox_bits *bits, const int order[3], unsigned char value,
+static void put_voxels(buffer *out, const vxm_grid *grid, const int order[3], unsigned char value,
                        const binvox_blocks *blocks) {
-  const int64_t *dims = bits->space.dims;
+  const int64_t *dims = vxm_grid_space(grid)->dims;
   unsigned char *row = malloc((size_t)dims[order[2]]);
   out->lacks |= !row;
   int64_t at[3];
   for (at[order[0]] = 0; at[order[0]] < dims[order[0]] && !out->lacks; at[order[0]]++)
     for (at[order[1]] = 0; at[order[1]] < dims[order[1]] && !out->lacks; at[order[1]]++) {
       for (at[order[2]] = 0; at[order[2]] < dims[order[2]]; at[order[2]]++)
-        row[at[order[2]]] =
-            binvox_bits_get(bits, at[0], at[1], at[2]) ? value_at(bits, value, blocks, at) : 0;
+        row[at[order[2]]] = vxm_grid_get(grid, at[0], at[1], at[2]) ? value_at(grid, value, blocks, at) : 0;
       put(out, row, (size_t)dims[order[2]]);
     }
   free(row);
 }
 
-static vxm_status write_raw(cli_run *cli, const binvox_bits *bits, const char *path) {
+static vxm_status write_raw(cli_run *cli, const vxm_grid *grid, const char *path) {
   buffer out = {.lacks = false};
-  put_voxels(&out, bits, (const int[3]){0, 2, 1}, 1, NULL);
+  put_voxels(&out, grid, (const int[3]){0, 2, 1}, 1, NULL);
   return write_buffer(cli, &out, path);
 }
 
-static vxm_status write_vtk(cli_run *cli, const binvox_bits *bits, const char *path) {
-  const vxm_space *s = &bits->space;
+static vxm_status write_vtk(cli_run *cli, const vxm_grid *grid, const char *path) {
+  const vxm_space *s = vxm_grid_space(grid);
   buffer out = {.lacks = false};
   print(&out, "# vtk DataFile Version 3.0\nvoxels by voxmend\nBINARY\nDATASET STRUCTURED_POINTS\n");
   print(&out, "DIMENSIONS %" PRId64 " %" PRId64 " %" PRId64 "\n", s->dims[0], s->dims[1], s->dims[2]);
@@ -98,7 +97,7 @@ static vxm_status write_vtk(cli_run *cli, const binvox_bits *bits, const char *p
   print(&out, "SPACING %.17g %.17g %.17g\n", s->voxel_size[0], s->voxel_size[1], s->voxel_size[2]);
   print(&out, "POINT_DATA %" PRId64 "\nSCALARS voxels unsigned_char 1\nLOOKUP_TABLE default\n",
         s->dims[0] * s->dims[1] * s->dims[2]);
-  put_voxels(&out, bits, (const int[3]){2, 1, 0}, 1, NULL);
+  put_voxels(&out, grid, (const int[3]){2, 1, 0}, 1, NULL);
   print(&out, "\n");
   return write_buffer(cli, &out, path);
 }
@@ -134,10 +133,10 @@ static void put_short(buffer *out, const char *name, int64_t value) {
 }
 
 /** As MCEdit's: y is up; blocks with x fastest, then z, then y. */
-static void put_schematic(buffer *out, const binvox_bits *bits, unsigned char block,
+static void put_schematic(buffer *out, const vxm_grid *grid, unsigned char block,
                           const binvox_blocks *blocks) {
   static const char materials[] = "Alpha";
-  const int64_t *dims = bits->space.dims;
+  const int64_t *dims = vxm_grid_space(grid)->dims;
   uint32_t count = (uint32_t)(dims[0] * dims[1] * dims[2]);
   put_name(out, TAG_COMPOUND, "Schematic");
   put_short(out, "Width", dims[0]);
@@ -148,10 +147,10 @@ static void put_schematic(buffer *out, const binvox_bits *bits, unsigned char bl
   put(out, materials, sizeof materials - 1);
   put_name(out, TAG_BYTES, "Blocks");
   put_number(out, count, 4);
-  put_voxels(out, bits, (const int[3]){1, 2, 0}, block, blocks);
+  put_voxels(out, grid, (const int[3]){1, 2, 0}, block, blocks);
   put_name(out, TAG_BYTES, "Data");
   put_number(out, count, 4);
-  put_voxels(out, bits, (const int[3]){1, 2, 0}, 0, NULL);
+  put_voxels(out, grid, (const int[3]){1, 2, 0}, 0, NULL);
   for (int list = 0; list < 2; list++) {
     put_name(out, TAG_LIST, list == 0 ? "Entities" : "TileEntities");
     put_number(out, TAG_COMPOUND, 1);
@@ -184,9 +183,9 @@ static void compress_into(buffer *out, const buffer *in) {
   deflateEnd(&stream);
 }
 
-static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const char *path, int64_t block,
+static vxm_status write_schematic(cli_run *cli, const vxm_grid *grid, const char *path, int64_t block,
                                   const binvox_blocks *blocks) {
-  const int64_t *dims = bits->space.dims;
+  const int64_t *dims = vxm_grid_space(grid)->dims;
   buffer plain = {.lacks = false}, packed = {.lacks = false};
   if (dims[0] > SCHEMATIC_MOST || dims[1] > SCHEMATIC_MOST || dims[2] > SCHEMATIC_MOST ||
       dims[0] * dims[1] * dims[2] > INT32_MAX) {
@@ -195,15 +194,15 @@ static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const c
              "%.300s: a schematic holds up to 2^31 - 1 blocks; lower -d, or give -fit", path);
     return VXM_ERROR_RANGE;
   }
-  put_schematic(&plain, bits, (unsigned char)block, blocks);
+  put_schematic(&plain, grid, (unsigned char)block, blocks);
   compress_into(&packed, &plain);
   free(plain.bytes);
   return write_buffer(cli, &packed, path);
 }
 #else
-static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const char *path, int64_t block,
+static vxm_status write_schematic(cli_run *cli, const vxm_grid *grid, const char *path, int64_t block,
                                   const binvox_blocks *blocks) {
-  (void)bits;
+  (void)grid;
   (void)block;
   (void)blocks;
   cli->error.code = VXM_ERROR_UNAVAILABLE;
@@ -219,21 +218,21 @@ static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const c
 static const int corners[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
-static bool is_used(const binvox_bits *bits, int64_t i, int64_t j, int64_t k) {
+static bool is_used(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
   for (int c = 0; c < 8; c++)
-    if (binvox_bits_get(bits, i - corners[c][0], j - corners[c][1], k - corners[c][2]))
+    if (vxm_grid_get(grid, i - corners[c][0], j - corners[c][1], k - corners[c][2]))
       return true;
   return false;
 }
 
 /** Numbers the corners of voxels from 1 on, and returns how many there are. */
-static int64_t number_nodes(int64_t *numbers, const binvox_bits *bits) {
-  const int64_t *dims = bits->space.dims;
+static int64_t number_nodes(int64_t *numbers, const vxm_grid *grid) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
   int64_t count = 0, at = 0;
   for (int64_t k = 0; k <= dims[2]; k++)
     for (int64_t j = 0; j <= dims[1]; j++)
       for (int64_t i = 0; i <= dims[0]; i++, at++)
-        numbers[at] = is_used(bits, i, j, k) ? ++count : 0;
+        numbers[at] = is_used(grid, i, j, k) ? ++count : 0;
   return count;
 }
 
@@ -247,13 +246,13 @@ static void put_nodes(buffer *out, const int64_t *numbers, const vxm_space *s) {
                 s->origin[1] + (double)j * s->voxel_size[1], s->origin[2] + (double)k * s->voxel_size[2]);
 }
 
-static void put_hexahedra(buffer *out, const int64_t *numbers, const binvox_bits *bits) {
-  const int64_t *dims = bits->space.dims;
+static void put_hexahedra(buffer *out, const int64_t *numbers, const vxm_grid *grid) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
   int64_t element = 0;
   for (int64_t k = 0; k < dims[2]; k++)
     for (int64_t j = 0; j < dims[1]; j++)
       for (int64_t i = 0; i < dims[0]; i++) {
-        if (!binvox_bits_get(bits, i, j, k))
+        if (!vxm_grid_get(grid, i, j, k))
           continue;
         print(out, "%" PRId64 " 5 2 1 1", ++element);
         for (int c = 0; c < 8; c++)
@@ -264,17 +263,17 @@ static void put_hexahedra(buffer *out, const int64_t *numbers, const binvox_bits
       }
 }
 
-static vxm_status write_msh(cli_run *cli, const binvox_bits *bits, const char *path) {
-  const int64_t *dims = bits->space.dims;
+static vxm_status write_msh(cli_run *cli, const vxm_grid *grid, const char *path) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
   size_t nodes = (size_t)(dims[0] + 1) * (size_t)(dims[1] + 1) * (size_t)(dims[2] + 1);
   int64_t *numbers = calloc(nodes, sizeof *numbers);
   if (!numbers)
     return lack(cli, path);
   buffer out = {.lacks = false};
-  print(&out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%" PRId64 "\n", number_nodes(numbers, bits));
-  put_nodes(&out, numbers, &bits->space);
-  print(&out, "$EndNodes\n$Elements\n%" PRId64 "\n", binvox_count(bits));
-  put_hexahedra(&out, numbers, bits);
+  print(&out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%" PRId64 "\n", number_nodes(numbers, grid));
+  put_nodes(&out, numbers, vxm_grid_space(grid));
+  print(&out, "$EndNodes\n$Elements\n%" PRId64 "\n", vxm_grid_count(grid));
+  put_hexahedra(&out, numbers, grid);
   print(&out, "$EndElements\n");
   free(numbers);
   return write_buffer(cli, &out, path);
@@ -282,32 +281,24 @@ static vxm_status write_msh(cli_run *cli, const binvox_bits *bits, const char *p
 
 /* ---- Grids of voxmend ---- */
 
-static vxm_status write_grid(cli_run *cli, const binvox_bits *bits, const char *path, const char *format) {
+static vxm_status write_grid(cli_run *cli, const vxm_grid *grid, const char *path, const char *format) {
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
-  vxm_grid *grid = NULL;
   options.format = format;
-  size_t words = (size_t)(bits->row_words * bits->space.dims[1] * bits->space.dims[2]);
-  vxm_status status = vxm_grid_create(&grid, cli->context, &bits->space, &cli->error);
-  if (status == VXM_OK)
-    status = vxm_grid_set_words(grid, bits->words, words, &cli->error);
-  if (status == VXM_OK)
-    status = vxm_grid_write(grid, path, &options, &cli->error);
-  vxm_grid_destroy(grid);
-  return status;
+  return vxm_grid_write(grid, path, &options, &cli->error);
 }
 
-vxm_status binvox_write(cli_run *cli, const binvox_request *given, const binvox_bits *bits,
+vxm_status binvox_write(cli_run *cli, const binvox_request *given, const vxm_grid *grid,
                         const binvox_blocks *blocks, const char *path) {
   switch (given->type) {
   case BINVOX_RAW:
-    return write_raw(cli, bits, path);
+    return write_raw(cli, grid, path);
   case BINVOX_VTK:
-    return write_vtk(cli, bits, path);
+    return write_vtk(cli, grid, path);
   case BINVOX_SCHEMATIC:
-    return write_schematic(cli, bits, path, given->block, blocks);
+    return write_schematic(cli, grid, path, given->block, blocks);
   case BINVOX_MSH:
-    return write_msh(cli, bits, path);
+    return write_msh(cli, grid, path);
   default:
-    return write_grid(cli, bits, path, binvox_types[given->type]);
+    return write_grid(cli, grid, path, binvox_types[given->type]);
   }
 }

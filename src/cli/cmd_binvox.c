@@ -157,41 +157,40 @@ static void warn_of_model(cli_run *cli, const char *model, const char *text) {
   cli_warn(cli, "%s: %s", model, text);
 }
 
-static int voxelize(cli_run *cli, const binvox_request *given, binvox_bits *out, binvox_blocks *blocks,
+/** Makes the grid, which is NULL before. */
+static int voxelize(cli_run *cli, const binvox_request *given, vxm_grid **grid, binvox_blocks *blocks,
                     const vxm_mesh *mesh, const vxm_space *space) {
   vxm_voxelize_options options = voxelize_options_of(given);
   vxm_model *model = NULL;
-  vxm_grid *grid = NULL;
   vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_status status = vxm_model_create(&model, mesh, &options, &cli->error);
   if (status == VXM_OK)
-    status = vxm_grid_create(&grid, cli->context, space, &cli->error);
+    status = vxm_grid_create(grid, cli->context, space, &cli->error);
   if (status == VXM_OK)
-    status = vxm_model_voxelize(grid, &report, model, NULL, &cli->error);
+    status = vxm_model_voxelize(*grid, &report, model, NULL, &cli->error);
   for (int64_t i = 0; status == VXM_OK && i < vxm_model_warning_count(model); i++)
     warn_of_model(cli, given->model, vxm_model_warning(model, i));
   int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
-  if (result == CLI_DONE && !binvox_bits_read(out, grid))
-    result = cli_fail_text(cli, "out of memory for the voxels: free some, or lower -d");
   if (result == CLI_DONE && given->materials && given->type == BINVOX_SCHEMATIC)
     result = binvox_blocks_make(cli, given, blocks, mesh, space);
-  vxm_grid_destroy(grid);
   vxm_model_destroy(model);
   return result;
 }
 
-static int change(cli_run *cli, const binvox_request *given, binvox_bits *bits) {
-  bool done = true;
+static int change(cli_run *cli, const binvox_request *given, vxm_grid **grid) {
+  int status = CLI_DONE;
   bool carved = !given->exact && ((given->carving && !given->voting) || given->dilated);
   if (carved)
-    done = binvox_carve(bits) && (!given->dilated || binvox_dilate(bits));
-  for (int64_t n = 0; done && n < given->halvings; n++)
-    done = binvox_halve(bits, given->least);
-  if (done && given->internal_gone)
-    done = binvox_remove_internal(bits);
-  if (done && given->fitted)
-    done = binvox_crop(bits);
-  return done ? CLI_DONE : cli_fail_text(cli, "out of memory for the voxels: free some, or lower -d");
+    status = binvox_carve(cli, *grid);
+  if (status == CLI_DONE && carved && given->dilated)
+    status = binvox_dilate(cli, *grid);
+  for (int64_t n = 0; status == CLI_DONE && n < given->halvings; n++)
+    status = binvox_halve(cli, grid, given->least);
+  if (status == CLI_DONE && given->internal_gone)
+    status = binvox_remove_internal(cli, *grid);
+  if (status == CLI_DONE && given->fitted)
+    status = binvox_crop(cli, grid);
+  return status;
 }
 
 /* ---- What scripts read ---- */
@@ -205,16 +204,15 @@ static void say_model(const box *b, double side) {
 }
 
 /** "counted" begins a line with two whole numbers and no more: scripts take all that are in it. */
-static void say_voxels(const binvox_bits *bits) {
-  const int64_t *dims = bits->space.dims;
-  int64_t low[3], high[3];
+static void say_voxels(const vxm_grid *grid) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
+  int64_t begin[3], end[3];
   printf("dimensions: %" PRId64 " x %" PRId64 " x %" PRId64 "\n", dims[0], dims[1], dims[2]);
-  printf("counted %" PRId64 " set voxels out of %" PRId64 "\n", binvox_count(bits),
+  printf("counted %" PRId64 " set voxels out of %" PRId64 "\n", vxm_grid_count(grid),
          dims[0] * dims[1] * dims[2]);
-  bool is_any = binvox_box(low, high, bits);
-  for (int axis = 0; axis < 3; axis++)
-    printf("%s%" PRId64 "%s", axis == 0 ? "area filled: " : " x ", is_any ? high[axis] - low[axis] + 1 : 0,
-           axis == 2 ? "\n" : "");
+  vxm_grid_box(begin, end, grid);
+  printf("area filled: %" PRId64 " x %" PRId64 " x %" PRId64 "\n", end[0] - begin[0], end[1] - begin[1],
+         end[2] - begin[2]);
 }
 
 /* ---- Files ---- */
@@ -236,14 +234,14 @@ static bool name_output(char path[PATH_SIZE], const binvox_request *given) {
   return length < PATH_SIZE;
 }
 
-static int write_file(cli_run *cli, const binvox_request *given, const binvox_bits *bits,
+static int write_file(cli_run *cli, const binvox_request *given, const vxm_grid *grid,
                       const binvox_blocks *blocks) {
   char path[PATH_SIZE];
   if (given->output)
     snprintf(path, sizeof path, "%s", given->output);
   else if (!name_output(path, given))
     return cli_fail_text(cli, "%.200s...: the name of the model is too long", given->model);
-  if (binvox_write(cli, given, bits, blocks, path) != VXM_OK)
+  if (binvox_write(cli, given, grid, blocks, path) != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
   printf("writing voxel file: %s\ndone\n", path);
@@ -269,17 +267,17 @@ static int make(cli_run *cli, const binvox_request *given, vxm_mesh **mesh) {
   vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
   if (vxm_mesh_prepare_in_place(mesh, NULL, &repair, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  binvox_bits bits = {.words = NULL};
+  vxm_grid *grid = NULL;
   binvox_blocks blocks = {.ids = NULL};
-  int status = voxelize(cli, given, &bits, &blocks, *mesh, &space);
+  int status = voxelize(cli, given, &grid, &blocks, *mesh, &space);
   if (status == CLI_DONE)
-    status = change(cli, given, &bits);
+    status = change(cli, given, &grid);
   if (status == CLI_DONE) {
-    say_voxels(&bits);
-    status = write_file(cli, given, &bits, &blocks);
+    say_voxels(grid);
+    status = write_file(cli, given, grid, &blocks);
   }
   binvox_blocks_free(&blocks);
-  binvox_bits_free(&bits);
+  vxm_grid_destroy(grid);
   return status;
 }
 

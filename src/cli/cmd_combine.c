@@ -21,7 +21,8 @@ static const cli_option known_options[] = {
     CLI_OPTIONS_END};
 
 static const char *const operations[] = {"or", "and", "minus", "xor", NULL};
-enum { OR, AND, MINUS, XOR };
+static const vxm_set_operation meant[] = {VXM_SET_UNION, VXM_SET_INTERSECTION, VXM_SET_DIFFERENCE,
+                                          VXM_SET_SYMMETRIC_DIFFERENCE};
 
 /** Grids and words between them take turns: only the grids are left as arguments, the words go to `words`. */
 static int read_formula(cli_run *cli, int *words) {
@@ -77,26 +78,14 @@ int combine_check_spaces(cli_run *cli, const vxm_space *a, const vxm_space *b, c
   return CLI_DONE;
 }
 
-static uint64_t combine_word(uint64_t a, uint64_t b, int operation) {
-  return operation == OR ? a | b : operation == AND ? a & b : operation == MINUS ? a & ~b : a ^ b;
+static int combine_grids(cli_run *cli, vxm_grid **grid, const vxm_grid *other, int operation) {
+  vxm_grid *combined;
+  if (vxm_grid_combine(&combined, *grid, other, meant[operation], &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  vxm_grid_destroy(*grid);
+  *grid = combined;
+  return CLI_DONE;
 }
-
-static int combine_grids(cli_run *cli, vxm_grid *grid, const vxm_grid *other, int operation) {
-  const int64_t *dims = vxm_grid_space(grid)->dims;
-  size_t count = (size_t)(vxm_grid_row_words(grid) * dims[1] * dims[2]);
-  const uint64_t *a = vxm_grid_words(grid), *b = vxm_grid_words(other);
-  uint64_t *words = malloc(count * sizeof *words);
-  if (!words)
-    return cli_fail_text(cli, "out of memory for the combined grid: free some");
-  for (size_t i = 0; i < count; i++)
-    words[i] = combine_word(a[i], b[i], operation);
-  vxm_status status = vxm_grid_set_words(grid, words, count, &cli->error);
-  free(words);
-  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
-}
-
-static const vxm_set_operation meant[] = {VXM_SET_UNION, VXM_SET_INTERSECTION, VXM_SET_DIFFERENCE,
-                                          VXM_SET_SYMMETRIC_DIFFERENCE};
 
 static int combine_octrees(cli_run *cli, vxm_sparse **set, const vxm_sparse *other, int operation) {
   vxm_sparse *combined;
@@ -119,7 +108,7 @@ static int combine_fields(cli_run *cli, vxm_field **field, const vxm_field *othe
 static int combine_two(cli_run *cli, combine_operand *out, const combine_operand *other, int operation) {
   return out->field    ? combine_fields(cli, &out->field, other->field, operation)
          : out->sparse ? combine_octrees(cli, &out->sparse, other->sparse, operation)
-                       : combine_grids(cli, out->grid, other->grid, operation);
+                       : combine_grids(cli, &out->grid, other->grid, operation);
 }
 
 /** From left to right. */

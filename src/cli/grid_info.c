@@ -26,27 +26,6 @@ bool cli_is_grid_name(const char *path) {
 
 /* ---- Looking ---- */
 
-static void widen(facts *f, int axis, int64_t at) {
-  f->begin[axis] = at < f->begin[axis] ? at : f->begin[axis];
-  f->end[axis] = at >= f->end[axis] ? at + 1 : f->end[axis];
-}
-
-/** The box of the set voxels. */
-static void find_box(facts *f) {
-  const uint64_t *row = vxm_grid_words(f->values.grid);
-  int64_t words = vxm_grid_row_words(f->values.grid);
-  memcpy(f->begin, f->space.dims, sizeof f->begin);
-  for (int64_t k = 0; k < f->space.dims[2]; k++)
-    for (int64_t j = 0; j < f->space.dims[1]; j++, row += words)
-      for (int64_t w = 0; w < words; w++)
-        if (row[w]) {
-          widen(f, 0, 64 * w + __builtin_ctzll(row[w]));
-          widen(f, 0, 64 * w + 63 - __builtin_clzll(row[w]));
-          widen(f, 1, j);
-          widen(f, 2, k);
-        }
-}
-
 /** A whole number of a field; -1 of another type. */
 static int64_t whole_number(const void *values, vxm_scalar scalar, size_t i) {
   switch (scalar) {
@@ -154,8 +133,7 @@ static vxm_status look(cli_run *cli, facts *f) {
   if (f->values.field)
     return look_at_numbers(cli, f);
   f->set = vxm_grid_count(f->values.grid);
-  if (f->set > 0)
-    find_box(f);
+  vxm_grid_box(f->begin, f->end, f->values.grid);
   return VXM_OK;
 }
 

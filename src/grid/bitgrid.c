@@ -163,6 +163,66 @@ const char *vxm_grid_warning(const vxm_grid *grid, int64_t index) {
   return grid && index >= 0 && index < grid->warnings.count ? grid->warnings.text[index] : "";
 }
 
+bool vxm_grid_box(int64_t begin[3], int64_t end[3], const vxm_grid *grid) {
+  for (int a = 0; a < 3; a++) {
+    if (begin)
+      begin[a] = 0;
+    if (end)
+      end[a] = 0;
+  }
+  if (!begin || !end || !grid)
+    return false;
+  for (int64_t k = 0; k < grid->space.dims[2]; k++)
+    for (int64_t j = 0; j < grid->space.dims[1]; j++) {
+      const uint64_t *row = vxm_grid_row(grid, j, k);
+      size_t first = 0, last = grid->row_words;
+      while (first < last && row[first] == 0)
+        first++;
+      if (first == last)
+        continue;
+      while (row[last - 1] == 0)
+        last--;
+      const int64_t low[3] = {64 * (int64_t)first + __builtin_ctzll(row[first]), j, k};
+      const int64_t high[3] = {64 * (int64_t)last - __builtin_clzll(row[last - 1]), j + 1, k + 1};
+      for (int a = 0; a < 3; a++) {
+        begin[a] = end[a] > 0 ? vxm_min(begin[a], low[a]) : low[a];
+        end[a] = vxm_max(end[a], high[a]);
+      }
+    }
+  return end[0] > 0;
+}
+
+static uint64_t combine_words(uint64_t a, uint64_t b, vxm_set_operation operation) {
+  switch (operation) {
+  case VXM_SET_UNION:
+    return a | b;
+  case VXM_SET_INTERSECTION:
+    return a & b;
+  case VXM_SET_DIFFERENCE:
+    return a & ~b;
+  default:
+    return a ^ b;
+  }
+}
+
+vxm_status vxm_bitgrid_combine(vxm_grid **out, const vxm_grid *a, const vxm_grid *b,
+                               vxm_set_operation operation, vxm_error *error) {
+  vxm_status status = vxm_grid_create(out, a->context, &a->space, error);
+  if (status != VXM_OK)
+    return status;
+  uint64_t *words = (*out)->words;
+  if (operation != VXM_SET_COMPLEMENT) {
+    for (size_t w = 0; w < a->word_count; w++)
+      words[w] = combine_words(a->words[w], b->words[w], operation);
+    return VXM_OK;
+  }
+  for (size_t w = 0; w < a->word_count; w++)
+    words[w] = ~a->words[w];
+  for (size_t w = a->row_words - 1; w < a->word_count; w += a->row_words)
+    words[w] &= vxm_grid_tail_mask(a);
+  return VXM_OK;
+}
+
 vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b, vxm_error *error) {
   VXM_RESULT_CLEAR(out);
   if (!out || !a || !b)

@@ -36,6 +36,10 @@ uint64_t vxm_space_bytes(const vxm_space *space);
 /** Makes room for a confidence, all 0, unless the grid has one. */
 vxm_status vxm_grid_add_confidence(vxm_grid *grid, vxm_error *error);
 
+/** See vxm_grid_combine in voxmend/grid.h; `b` is not looked at for the complement. */
+vxm_status vxm_bitgrid_combine(vxm_grid **out, const vxm_grid *a, const vxm_grid *b,
+                               vxm_set_operation operation, vxm_error *error);
+
 /** vxm_grid_count and vxm_grid_hash in one go. */
 void vxm_grid_count_hash(const vxm_grid *grid, int64_t *count, uint64_t *hash);
 

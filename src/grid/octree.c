@@ -140,9 +140,7 @@ static void walk_node(const walk *w, int level, size_t index, const int64_t at[3
     size_t below = next;
     next += mixed;
     vxm_sparse_piece piece = {.size = sizeof piece, .side = side, .bits = ~UINT64_C(0)};
-    vxm_octree_place(child, piece.position);
-    for (int a = 0; a < 3; a++)
-      piece.position[a] = at[a] + piece.position[a] * side;
+    vxm_octree_child_at(piece.position, at, child, side);
     if (!vxm_cube_meets(piece.position, side, w->begin, w->end))
       continue;
     if (mixed && level > 0) {

@@ -87,6 +87,13 @@ static inline void vxm_octree_place(unsigned child, int64_t place[3]) {
     place[a] = (child >> a & 1) | (child >> (a + 2) & 2);
 }
 
+/** The first voxel of a child that is `side` voxels long, of a node whose first voxel is `at`. */
+static inline void vxm_octree_child_at(int64_t out[3], const int64_t at[3], unsigned child, int64_t side) {
+  vxm_octree_place(child, out);
+  for (int a = 0; a < 3; a++)
+    out[a] = at[a] + out[a] * side;
+}
+
 /** The index of a mixed child among those of its level. */
 static inline size_t vxm_octree_index(const vxm_octree_node *node, unsigned child) {
   return (size_t)node->first + (size_t)vxm_popcount(node->mixed & vxm_low_bits(child));

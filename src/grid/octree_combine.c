@@ -103,9 +103,7 @@ static vxm_octree_state combine_nodes(combination *c, int level, cell a, cell b,
   for (uint64_t open = all.high & ~all.low; open && c->result.status == VXM_OK; open &= open - 1) {
     unsigned child = (unsigned)__builtin_ctzll(open);
     int64_t below[3];
-    vxm_octree_place(child, below);
-    for (int i = 0; i < 3; i++)
-      below[i] = at[i] + below[i] * side;
+    vxm_octree_child_at(below, at, child, side);
     cell x = child_of(c, 0, level, a, p, child), y = child_of(c, 1, level, b, q, child);
     vxm_octree_state made =
         level > 0 ? combine_nodes(c, level - 1, x, y, below)

@@ -57,9 +57,7 @@ static void add_box(vxm_octree_pieces *p, const int64_t at[3], int64_t side, con
   else
     for (unsigned child = 0; child < 64 && p->status == VXM_OK; child++) {
       int64_t place[3];
-      vxm_octree_place(child, place);
-      for (int a = 0; a < 3; a++)
-        place[a] = at[a] + place[a] * (side / 4);
+      vxm_octree_child_at(place, at, child, side / 4);
       add_box(p, place, side / 4, begin, end);
     }
 }

@@ -44,6 +44,9 @@ VXM_API int64_t vxm_grid_row_words(const vxm_grid *grid);
 VXM_API const uint64_t *vxm_grid_words(const vxm_grid *grid);
 /** Number of set voxels. */
 VXM_API int64_t vxm_grid_count(const vxm_grid *grid);
+/** The smallest box that has all set voxels, begin..end-1 along each axis, as vxm_grid_window takes it.
+ * @return false, and 0 in all six, if no voxel is set */
+VXM_API bool vxm_grid_box(int64_t begin[3], int64_t end[3], const vxm_grid *grid);
 /** A 64-bit hash of dimensions and bits, the same on every machine. */
 VXM_API uint64_t vxm_grid_hash(const vxm_grid *grid);
 /** One byte, 0 or 1, per voxel into dims[0]*dims[1]*dims[2] bytes, as [x][y][z] in C order (z fastest). */
@@ -251,6 +254,24 @@ typedef struct vxm_comparison {
 /** Compares two grids of equal dimensions. @return VXM_OK; VXM_ERROR_ARGUMENT if the dimensions differ */
 VXM_API vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b,
                                     vxm_error *error);
+
+/** What two sets of voxels are combined to. */
+typedef enum vxm_set_operation {
+  VXM_SET_UNION = 0,
+  VXM_SET_INTERSECTION,
+  VXM_SET_DIFFERENCE, /**< what `a` has and `b` has not */
+  VXM_SET_SYMMETRIC_DIFFERENCE,
+  VXM_SET_COMPLEMENT /**< what `a` has not, within its box; `b` is NULL */
+} vxm_set_operation;
+
+/**
+ * Makes a new grid of two of equal dimensions; it takes the space of `a`, and has no confidence.
+ *
+ * @param[out] out owned by the caller (vxm_grid_destroy)
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, also if the dimensions differ; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_grid_combine(vxm_grid **out, const vxm_grid *a, const vxm_grid *b,
+                                    vxm_set_operation operation, vxm_error *error);
 
 #ifdef __cplusplus
 }

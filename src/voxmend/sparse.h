@@ -85,15 +85,6 @@ VXM_API vxm_status vxm_sparse_coverage(vxm_field **out, const vxm_sparse *sparse
                                        const vxm_coverage_options *options, const int64_t begin[3],
                                        const int64_t end[3], vxm_error *error);
 
-/** What two sets of voxels are combined to. */
-typedef enum vxm_set_operation {
-  VXM_SET_UNION = 0,
-  VXM_SET_INTERSECTION,
-  VXM_SET_DIFFERENCE, /**< what `a` has and `b` has not */
-  VXM_SET_SYMMETRIC_DIFFERENCE,
-  VXM_SET_COMPLEMENT /**< what `a` has not, within its box; `b` is NULL */
-} vxm_set_operation;
-
 /**
  * Makes a new set of two of equal dimensions; it takes the space of `a`.
  *

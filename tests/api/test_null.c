@@ -92,6 +92,7 @@ static struct {
   vxm_comparison comparison;
   vxm_engine_info info;
   int64_t count;
+  int64_t box_begin[3], box_end[3];
   vxm_space space;
   vxm_published_report published_report;
   vxm_baseline_report baseline;
@@ -225,6 +226,7 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_grid_row_words, 1, 1, GIVES(vxm_grid_row_words(P(0, grid))))                                       \
   X(vxm_grid_words, 1, 1, GIVES(vxm_grid_words(P(0, grid))))                                               \
   X(vxm_grid_count, 1, 1, GIVES(vxm_grid_count(P(0, grid))))                                               \
+  X(vxm_grid_box, 3, 7, GIVES(vxm_grid_box(P(0, out.box_begin), P(1, out.box_end), P(2, grid))))           \
   X(vxm_grid_hash, 1, 1, GIVES(vxm_grid_hash(P(0, grid))))                                                 \
   X(vxm_grid_unpack, 2, 3, DOES(vxm_grid_unpack(P(0, grid), P(1, (uint8_t *)out.values))))                 \
   X(vxm_grid_pack, 2, 3, DOES(vxm_grid_pack(P(0, grid), P(1, (const uint8_t *)unmoved))))                  \
@@ -247,6 +249,8 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_grid_surface_mesh, 3, 3, vxm_grid_surface_mesh(P(0, &out.mesh), P(1, grid), P(2, &error)))         \
   X(vxm_grid_picture, 4, 3, vxm_grid_picture(P(0, grid), P(1, "out.png"), P(2, &picture), P(3, &error)))   \
   X(vxm_grid_page, 4, 3, vxm_grid_page(P(0, grid), P(1, "out.html"), P(2, &page), P(3, &error)))           \
+  X(vxm_grid_combine, 4, 7,                                                                                \
+    vxm_grid_combine(P(0, &out.grid), P(1, grid), P(2, grid), VXM_SET_UNION, P(3, &error)))                \
   X(vxm_grid_compare, 4, 7, vxm_grid_compare(P(0, &out.comparison), P(1, grid), P(2, grid), P(3, &error))) \
   X(vxm_grid_write_coords, 3, 3, vxm_grid_write_coords(P(0, grid), P(1, "out.npy"), P(2, &error)))
 

@@ -186,10 +186,51 @@ static void test_windows(void **state) {
   vxm_soup_destroy(soup);
 }
 
+typedef struct told {
+  int count;
+  double fraction[16];
+} told;
+
+static int note(const char *phase, double fraction, void *payload) {
+  told *t = payload;
+  if (strcmp(phase, "voxelizing the surface") == 0 && t->count < 16)
+    t->fraction[t->count++] = fraction;
+  return 0;
+}
+
+/** Of slabs of one height each ends at its share. */
+static void test_progress(void **state) {
+  (void)state;
+  enum { SLABS = 4 };
+  told seen = {0};
+  vxm_context_options of_context = VXM_CONTEXT_OPTIONS_INIT;
+  of_context.progress = note;
+  of_context.payload = &seen;
+  vxm_context *own;
+  vxm_engine *usual = engine;
+  assert_int_equal(vxm_context_create(&own, &of_context, NULL), VXM_OK);
+  assert_int_equal(vxm_engine_create(&engine, own, ENGINE, NULL, NULL), VXM_OK);
+  vxm_soup *soup = box_with_ties(0.2, 0.3);
+  vxm_space space = engine_space(64, 64, 64);
+  engine->info.block_bytes = 64 * 64 * 64 / 8 / SLABS;
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.mode = VXM_MODE_SURFACE;
+  options.engine = engine;
+  vxm_grid_destroy(engine_solid(soup, &space, &options, NULL));
+  assert_int_equal(seen.count, SLABS);
+  for (int s = 0; s < SLABS; s++)
+    assert_true(fabs(seen.fraction[s] - (s + 1.0) / SLABS) < 1e-9);
+  vxm_soup_destroy(soup);
+  vxm_engine_destroy(engine);
+  vxm_context_destroy(own);
+  engine = usual;
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rules), cmocka_unit_test(test_random),
-                                     cmocka_unit_test(test_ties),  cmocka_unit_test(test_fine),
-                                     cmocka_unit_test(test_far),   cmocka_unit_test(test_windows)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rules),   cmocka_unit_test(test_random),
+                                     cmocka_unit_test(test_ties),    cmocka_unit_test(test_fine),
+                                     cmocka_unit_test(test_far),     cmocka_unit_test(test_windows),
+                                     cmocka_unit_test(test_progress)};
   int status = gpu_test_start(NULL);
   if (status == 0)
     status = cmocka_run_group_tests_name("surfaces by " ENGINE, tests, setup, teardown);

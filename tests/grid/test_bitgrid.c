@@ -293,12 +293,101 @@ static void test_context_lives_on(void **state) {
   vxm_grid_destroy(grid);
 }
 
+/** Where voxels are set, one after another. */
+static void check_box(const vxm_grid *grid) {
+  const int64_t *n = grid->space.dims;
+  int64_t begin[3] = {n[0], n[1], n[2]}, end[3] = {0, 0, 0}, found[2][3] = {{9, 9, 9}, {9, 9, 9}}, v[3];
+  bool is_any = false;
+  for (v[2] = 0; v[2] < n[2]; v[2]++)
+    for (v[1] = 0; v[1] < n[1]; v[1]++)
+      for (v[0] = 0; v[0] < n[0]; v[0]++)
+        for (int a = 0; a < 3 && vxm_grid_get(grid, v[0], v[1], v[2]); a++) {
+          begin[a] = vxm_min(begin[a], v[a]);
+          end[a] = vxm_max(end[a], v[a] + 1);
+          is_any = true;
+        }
+  assert_int_equal(vxm_grid_box(found[0], found[1], grid), is_any);
+  for (int a = 0; a < 3; a++) {
+    assert_int_equal(found[0][a], is_any ? begin[a] : 0);
+    assert_int_equal(found[1][a], is_any ? end[a] : 0);
+  }
+}
+
+static void test_box(void **state) {
+  (void)state;
+  vxm_rng rng = {12};
+  for (int round = 0; round < 60; round++) {
+    vxm_space space = {{1, 1, 1}, {0, 0, 0}, {1, 1, 1}};
+    for (int a = 0; a < 3; a++)
+      space.dims[a] = 1 + (int64_t)vxm_rng_below(&rng, a == 0 ? 200 : 9);
+    vxm_grid *grid = new_grid(NULL, space);
+    check_box(grid);
+    for (int few = 0; few < 4; few++) {
+      int64_t at[3];
+      for (int a = 0; a < 3; a++)
+        at[a] = (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[a]);
+      vxm_grid_set(grid, at[0], at[1], at[2], true);
+      check_box(grid);
+    }
+    vxm_grid_destroy(grid);
+  }
+}
+
+/** Voxel by voxel; and what lies beyond the rows stays clear. */
+static void test_combine(void **state) {
+  (void)state;
+  vxm_rng rng = {13};
+  for (int round = 0; round < 40; round++) {
+    const int64_t widths[4] = {1, 64, 65, 1 + (int64_t)vxm_rng_below(&rng, 150)};
+    const vxm_space space = {{widths[round % 4], 3, 4}, {1, 2, 3}, {0.5, 1, 2}};
+    vxm_grid *a = new_grid(NULL, space), *b = new_grid(NULL, space), *made = NULL;
+    for (int64_t v = 0; v < 12 * space.dims[0]; v++) {
+      vxm_grid_set(a, v / 12, v % 3, v / 3 % 4, vxm_rng_below(&rng, 2));
+      vxm_grid_set(b, v / 12, v % 3, v / 3 % 4, vxm_rng_below(&rng, 3) == 0);
+    }
+    b->space.origin[0] = 7; /* the result lies where the first does */
+    for (int op = VXM_SET_UNION; op <= VXM_SET_COMPLEMENT; op++) {
+      const vxm_grid *second = op == VXM_SET_COMPLEMENT ? NULL : b;
+      assert_int_equal(vxm_grid_combine(&made, a, second, (vxm_set_operation)op, NULL), VXM_OK);
+      assert_padding_clear(made);
+      assert_memory_equal(&made->space, &a->space, sizeof a->space);
+      for (int64_t v = 0; v < 12 * space.dims[0]; v++) {
+        const int64_t i = v / 12, j = v % 3, k = v / 3 % 4;
+        const bool p = vxm_grid_get(a, i, j, k), q = vxm_grid_get(b, i, j, k);
+        const bool wanted[] = {p || q, p && q, p && !q, p != q, !p};
+        assert_int_equal(vxm_grid_get(made, i, j, k), wanted[op]);
+      }
+      vxm_grid_destroy(made);
+    }
+    vxm_grid_destroy(a);
+    vxm_grid_destroy(b);
+  }
+}
+
+static void test_combine_refuses(void **state) {
+  (void)state;
+  const vxm_space space = {{64, 3, 4}, {0, 0, 0}, {1, 1, 1}}, other = {{64, 4, 3}, {0, 0, 0}, {1, 1, 1}};
+  vxm_grid *a = new_grid(NULL, space), *b = new_grid(NULL, other), *made = a;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_grid_combine(&made, a, b, VXM_SET_UNION, &error), VXM_ERROR_ARGUMENT);
+  assert_null(made);
+  assert_string_equal(error.text, "combine: sets of 64 x 3 x 4 and 64 x 4 x 3 voxels cannot be combined");
+  assert_int_equal(vxm_grid_combine(&made, a, NULL, VXM_SET_UNION, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_combine(&made, a, a, (vxm_set_operation)5, &error), VXM_ERROR_ARGUMENT);
+  assert_string_equal(error.text, "combine: operation 5 is unknown");
+  vxm_grid_destroy(a);
+  vxm_grid_destroy(b);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_against_bytes),
       cmocka_unit_test(test_row_spans),
       cmocka_unit_test(test_hash),
       cmocka_unit_test(test_compare),
+      cmocka_unit_test(test_box),
+      cmocka_unit_test(test_combine),
+      cmocka_unit_test(test_combine_refuses),
       cmocka_unit_test(test_space_check),
       cmocka_unit_test(test_memory_limit),
       cmocka_unit_test(test_context_lives_on),

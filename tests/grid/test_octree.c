@@ -254,7 +254,7 @@ static void test_wrong_arguments(void **state) {
   vxm_sparse *p = octree_of(a), *q = octree_of(b), *made = p;
   assert_int_equal(vxm_sparse_combine(&made, p, q, VXM_SET_UNION, &error), VXM_ERROR_ARGUMENT);
   assert_null(made);
-  assert_string_equal(error.text, "sparse: sets of 4 x 5 x 6 and 4 x 5 x 7 voxels cannot be combined");
+  assert_string_equal(error.text, "combine: sets of 4 x 5 x 6 and 4 x 5 x 7 voxels cannot be combined");
   assert_int_equal(vxm_sparse_combine(&made, p, NULL, VXM_SET_UNION, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_sparse_combine(&made, p, p, (vxm_set_operation)9, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_sparse_from_grid(&made, NULL, NULL), VXM_ERROR_ARGUMENT);

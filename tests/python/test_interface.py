@@ -388,6 +388,14 @@ class Sets(unittest.TestCase):
                 self.assertEqual(x ^ y, (x | y) - (x & y))
                 self.assertNotEqual(x, y)
 
+    def test_filled_box(self):
+        for grid, _ in self.grids():
+            self.assertIsNone((grid - grid).filled_box)
+            begin, end = grid.filled_box
+            at = grid.sparse_indices
+            self.assertEqual((begin.tolist(), end.tolist()), (at.min(axis=0).tolist(), (at.max(axis=0) + 1).tolist()))
+            self.assertEqual(grid.matrix[tuple(map(slice, begin, end))].sum(), grid.filled_count)
+
     def test_other_spaces(self):
         matrix = numpy.ones((3, 4, 5))
         grid = voxmend.VoxelGrid(matrix, 1, 0)

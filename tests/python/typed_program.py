@@ -64,7 +64,7 @@ def grids(mesh: voxmend.Mesh) -> voxmend.VoxelGrid:
     both: voxmend.VoxelGrid = (one | other) - (one & other) ^ ~one
     same: bool = both == pickle.loads(pickle.dumps(both))
     compared: voxmend.Comparison = one.compare(other)
-    print(repr(one), same, compared.iou, one.hash, one.volume, one.bounds.tolist(), one.transform.shape)
+    print(repr(one), same, compared.iou, one.hash, one.volume, one.bounds.tolist(), one.filled_box, one.transform.shape)
     tight = mesh.voxelize(pitch=0.1)
     filled: numpy.typing.NDArray[numpy.bool_] = tight.is_filled(tight.indices_to_points([[0, 0, 0], [1, 1, 1]]))
     surface: voxmend.Mesh = tight.fill().hollow().as_boxes()

@@ -43,12 +43,13 @@ static vxm_status fill_zero(vxm_opencl *engine, vxm_cl_buffer_id id, size_t byte
                       "clearing a buffer", error);
 }
 
-vxm_status vxm_cl_reserve_zero(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error) {
-  cl_mem before = engine->buffers[id].bytes >= bytes ? engine->buffers[id].mem : NULL;
-  vxm_status status = vxm_cl_reserve(engine, id, bytes, error);
+vxm_status vxm_cl_reserve_flips(vxm_opencl *engine, size_t bytes, vxm_error *error) {
+  const vxm_cl_buffer *flips = &engine->buffers[VXM_CL_FLIPS];
+  cl_mem before = flips->bytes >= bytes ? flips->mem : NULL;
+  vxm_status status = vxm_cl_reserve(engine, VXM_CL_FLIPS, bytes, error);
   if (status != VXM_OK || before)
     return status;
-  return fill_zero(engine, id, engine->buffers[id].bytes, error);
+  return fill_zero(engine, VXM_CL_FLIPS, flips->bytes, error);
 }
 
 vxm_status vxm_cl_clear(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error) {

@@ -94,7 +94,7 @@ vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slab *slab, const vxm_pa
   size_t bytes = slab->words * sizeof(uint64_t), begin = 0;
   columns.few_columns = FEW_COLUMNS;
   columns.ordered = passes->ordered;
-  vxm_status status = vxm_cl_reserve_zero(engine, VXM_CL_FLIPS, bytes, error);
+  vxm_status status = vxm_cl_reserve_flips(engine, bytes, error);
   if (status == VXM_OK)
     status = vxm_cl_reserve(engine, into, bytes, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {

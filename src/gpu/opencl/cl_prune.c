@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The octree that the device has made, in its canonical form: shaders/prune.cl finds out what is empty or
  * full, prefix sums tell where the rest belongs. */
+#include "base/clock.h"
 #include "gpu/opencl/cl_sort.h"
 #include "gpu/opencl/cl_tree.h"
 
@@ -143,9 +144,25 @@ vxm_status vxm_cl_tree_take(vxm_sparse **out, vxm_opencl *engine, const vxm_cl_t
                             vxm_cl_buffer_id bricks, vxm_cl_buffer_id inside, vxm_context *context,
                             vxm_error *error) {
   pruning p = {.engine = engine, .tree = tree, .bricks = bricks, .inside = inside};
+  double since = vxm_clock_ms();
   vxm_status status = vxm_octree_new(out, context, &tree->space, error);
   p.sparse = *out;
   if (status == VXM_OK)
     status = tree->level[0].count > 0 ? take_all(&p, error) : take_none(&p, error);
+  if (status == VXM_OK && engine->stages) {
+    engine->stages->cells_active = tree->level[0].count;
+    engine->stages->nodes = tree->node_count;
+  }
+  return status == VXM_OK ? vxm_cl_stage_end(engine, VXM_CL_STAGE(prune), &since, error) : status;
+}
+
+vxm_status vxm_cl_tree_end(vxm_sparse **out, vxm_opencl *engine, vxm_status status) {
+  if (status != VXM_OK) {
+    engine->cl->Finish(engine->queue);
+    vxm_sparse_destroy(*out);
+    *out = NULL;
+  }
+  for (int b = VXM_CL_CELLS; b <= VXM_CL_OCTREE_END; b++)
+    vxm_cl_release(engine, (vxm_cl_buffer_id)b);
   return status;
 }

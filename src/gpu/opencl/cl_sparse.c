@@ -227,17 +227,12 @@ static vxm_status make(vxm_sparse **out, making *m, const vxm_space *space, vxm_
   vxm_status status = prepare(m, space, error);
   if (status == VXM_OK && m->tree.level[0].count > 0)
     status = make_passes(m, error);
-  double since = vxm_clock_ms();
   if (status == VXM_OK)
     status = vxm_cl_tree_take(out, engine, &m->tree, m->bricks, m->inside, m->job->placed->context, error);
   if (status == VXM_OK)
     status = vxm_slab_solid_touched(&vxm_cl_slab_solid, &engine->base, m->job->has_voxels,
                                     m->job->triangles->split.part_count, error);
-  if (status == VXM_OK && engine->stages) {
-    engine->stages->cells_active = m->tree.level[0].count;
-    engine->stages->nodes = m->tree.node_count;
-  }
-  return status == VXM_OK ? vxm_cl_stage_end(engine, VXM_CL_STAGE(prune), &since, error) : status;
+  return status;
 }
 
 vxm_status vxm_cl_sparse(vxm_engine *base, vxm_sparse **out, const vxm_space *space,
@@ -252,12 +247,5 @@ vxm_status vxm_cl_sparse(vxm_engine *base, vxm_sparse **out, const vxm_space *sp
   making m = {.engine = engine, .job = job, .passes = {.context = base->context}};
   status = make(out, &m, space, error);
   vxm_disjoint_passes_destroy(&m.passes);
-  if (status != VXM_OK) {
-    engine->cl->Finish(engine->queue);
-    vxm_sparse_destroy(*out);
-    *out = NULL;
-  }
-  for (int b = VXM_CL_CELLS; b <= VXM_CL_OCTREE_END; b++)
-    vxm_cl_release(engine, (vxm_cl_buffer_id)b);
-  return status;
+  return vxm_cl_tree_end(out, engine, status);
 }

@@ -29,11 +29,7 @@ static vxm_status set_slab(vxm_engine *base, const vxm_slab *slab, int to, void 
     status = vxm_cl_run(engine, VXM_CL_SET_SURFACE, job.triangle_count, args, count, error);
   if (status == VXM_OK)
     status = vxm_cl_run_groups(engine, VXM_CL_SET_LARGE, vxm_cl_busy_groups(engine), args, count, error);
-  return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface",
-                                         (double)(slab->end - slab->window->begin) /
-                                             (double)(slab->window->end - slab->window->begin),
-                                         error)
-                          : status;
+  return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface", 1, error) : status;
 }
 
 vxm_status vxm_cl_surface(vxm_engine *base, const vxm_surface *surface, const vxm_window *window,

@@ -60,13 +60,9 @@ static vxm_status make(vxm_sparse **out, vxm_opencl *engine, const vxm_surface *
     status = set_voxels(engine, &tree, surface, kind, error);
   if (status == VXM_OK)
     status = vxm_cl_stage_end(engine, VXM_CL_STAGE(voxelize), &since, error);
-  if (status == VXM_OK)
-    status = vxm_cl_tree_take(out, engine, &tree, VXM_CL_BRICKS, VXM_CL_INSIDE, surface->context, error);
-  if (status == VXM_OK && engine->stages) {
-    engine->stages->cells_active = tree.level[0].count;
-    engine->stages->nodes = tree.node_count;
-  }
-  return status == VXM_OK ? vxm_cl_stage_end(engine, VXM_CL_STAGE(prune), &since, error) : status;
+  return status == VXM_OK
+             ? vxm_cl_tree_take(out, engine, &tree, VXM_CL_BRICKS, VXM_CL_INSIDE, surface->context, error)
+             : status;
 }
 
 vxm_status vxm_cl_surface_sparse(vxm_engine *base, vxm_sparse **out, const vxm_surface *surface,
@@ -77,12 +73,5 @@ vxm_status vxm_cl_surface_sparse(vxm_engine *base, vxm_sparse **out, const vxm_s
   if (status != VXM_OK || engine->device_cache.oversized_surface.count > 0)
     return status;
   status = make(out, engine, surface, kind, error);
-  if (status != VXM_OK) {
-    engine->cl->Finish(engine->queue);
-    vxm_sparse_destroy(*out);
-    *out = NULL;
-  }
-  for (int b = VXM_CL_CELLS; b <= VXM_CL_OCTREE_END; b++)
-    vxm_cl_release(engine, (vxm_cl_buffer_id)b);
-  return status;
+  return vxm_cl_tree_end(out, engine, status);
 }

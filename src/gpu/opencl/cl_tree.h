@@ -35,10 +35,14 @@ vxm_status vxm_cl_tree_create(vxm_cl_tree *out, vxm_opencl *engine, const vxm_sp
 vxm_status vxm_cl_tree_create_surface(vxm_cl_tree *out, vxm_opencl *engine, const vxm_surface *surface,
                                       vxm_error *error);
 
-/** Makes the octree of what bricks and nodes have inside. */
+/** Makes the octree of what bricks and nodes have inside: the stage "prune". */
 vxm_status vxm_cl_tree_take(vxm_sparse **out, vxm_opencl *engine, const vxm_cl_tree *tree,
                             vxm_cl_buffer_id bricks, vxm_cl_buffer_id inside, vxm_context *context,
                             vxm_error *error);
+
+/** Releases what was made on the device for an octree, in any case and, where `status` is a failure, the
+ * octree itself. Returns `status`. */
+vxm_status vxm_cl_tree_end(vxm_sparse **out, vxm_opencl *engine, vxm_status status);
 
 /** What kernels are told of a level: see shaders/nodes.cl. */
 static inline cl_uint4 vxm_cl_level_of(const vxm_cl_tree *tree, int level, cl_uint z, cl_uint w) {

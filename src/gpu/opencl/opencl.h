@@ -204,8 +204,8 @@ uint64_t vxm_cl_busy_groups(const vxm_opencl *engine);
 /** Room for so many bytes; what was in it is lost if it grows. @return VXM_OK, VXM_ERROR_MEMORY,
  * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_RANGE (more than the device gives to one buffer) */
 vxm_status vxm_cl_reserve(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error);
-/** As vxm_cl_reserve, with all bytes zero if it grows. */
-vxm_status vxm_cl_reserve_zero(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error);
+/** As vxm_cl_reserve, of VXM_CL_FLIPS, with all bytes zero if it grows. */
+vxm_status vxm_cl_reserve_flips(vxm_opencl *engine, size_t bytes, vxm_error *error);
 /** Room, and the first bytes zero. */
 vxm_status vxm_cl_clear(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error);
 void vxm_cl_release(vxm_opencl *engine, vxm_cl_buffer_id id);

@@ -39,11 +39,12 @@ vxm_status vxm_gl_reserve(vxm_opengl *engine, vxm_gl_buffer_id id, size_t bytes,
   return status;
 }
 
-vxm_status vxm_gl_reserve_zero(vxm_opengl *engine, vxm_gl_buffer_id id, size_t bytes, vxm_error *error) {
-  size_t before = engine->buffers[id].bytes;
-  vxm_status status = vxm_gl_reserve(engine, id, bytes, error);
-  if (status == VXM_OK && engine->buffers[id].bytes != before) {
-    engine->context.gl.BindBuffer(target, engine->buffers[id].name);
+vxm_status vxm_gl_reserve_flips(vxm_opengl *engine, size_t bytes, vxm_error *error) {
+  const vxm_gl_buffer *flips = &engine->buffers[VXM_GL_FLIPS];
+  size_t before = flips->bytes;
+  vxm_status status = vxm_gl_reserve(engine, VXM_GL_FLIPS, bytes, error);
+  if (status == VXM_OK && flips->bytes != before) {
+    engine->context.gl.BindBuffer(target, flips->name);
     engine->context.gl.ClearBufferData(target, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
   }
   return status;

@@ -47,6 +47,8 @@ static vxm_status draw(vxm_opengl *engine, vxm_gl_job *gl_job, vxm_error *error)
   const vxm_gl *gl = &engine->context.gl;
   int64_t most = engine->base.info.viewport;
   vxm_status status = vxm_gl_use(engine, VXM_GL_DRAW_COLUMNS, error);
+  if (status != VXM_OK)
+    return status;
   gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, engine->framebuffer);
   gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, engine->buffers[VXM_GL_LARGE].name);
   for (int64_t v = gl_job->columns.first[1]; v < gl_job->columns.last[1] && status == VXM_OK; v += most)
@@ -137,7 +139,7 @@ vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slab *slab, const vxm_pa
                           const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
   vxm_gl_job gl_job = job_of(engine, slab, job);
   size_t bytes = slab->words * sizeof(uint64_t), begin = 0;
-  vxm_status status = vxm_gl_reserve_zero(engine, VXM_GL_FLIPS, bytes, error);
+  vxm_status status = vxm_gl_reserve_flips(engine, bytes, error);
   if (status == VXM_OK)
     status = vxm_gl_reserve(engine, into, bytes, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {

@@ -329,7 +329,7 @@ vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slab *slab, const vxm_par
   s.columns = vxm_slab_columns_of(slab, &turned);
   memcpy(s.gl_job.axes, s.columns.axes, sizeof s.gl_job.axes);
   s.gl_job.bits = s.columns.bits;
-  vxm_status status = vxm_gl_reserve_zero(engine, VXM_GL_FLIPS, bytes, error);
+  vxm_status status = vxm_gl_reserve_flips(engine, bytes, error);
   if (status == VXM_OK)
     status = vxm_gl_reserve(engine, into, bytes, error);
   if (status == VXM_OK)

@@ -100,11 +100,7 @@ static vxm_status draw_slab(vxm_engine *base, const vxm_slab *slab, int into, vo
     status = draw(engine, &job, error);
   if (status == VXM_OK)
     status = vxm_gl_check(gl, "opengl: drawing a surface", error);
-  return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface",
-                                         (double)(slab->end - slab->window->begin) /
-                                             (double)(slab->window->end - slab->window->begin),
-                                         error)
-                          : status;
+  return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface", 1, error) : status;
 }
 
 vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vxm_window *window,

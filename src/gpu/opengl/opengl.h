@@ -128,8 +128,8 @@ void vxm_gl_dispatch(const vxm_gl *gl, uint64_t count, bool groups);
 /** Room for so many bytes; what was in it is lost if it grows. @return VXM_OK, VXM_ERROR_MEMORY,
  * VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_gl_reserve(vxm_opengl *engine, vxm_gl_buffer_id id, size_t bytes, vxm_error *error);
-/** As vxm_gl_reserve, with all bytes zero if it grows. */
-vxm_status vxm_gl_reserve_zero(vxm_opengl *engine, vxm_gl_buffer_id id, size_t bytes, vxm_error *error);
+/** As vxm_gl_reserve, of VXM_GL_FLIPS, with all bytes zero if it grows. */
+vxm_status vxm_gl_reserve_flips(vxm_opengl *engine, size_t bytes, vxm_error *error);
 /** Frees a buffer. */
 void vxm_gl_release(vxm_opengl *engine, vxm_gl_buffer_id id);
 /** Room, and these bytes in it. */

@@ -11,14 +11,12 @@
 #include <string.h>
 
 /** VTK's names of the types. */
-static const struct {
-  const char *name;
-  vxm_scalar scalar;
-} types[] = {{"UInt8", VXM_UINT8},     {"Int8", VXM_INT8},      {"UInt16", VXM_UINT16}, {"Int16", VXM_INT16},
-             {"UInt32", VXM_UINT32},   {"Int32", VXM_INT32},    {"UInt64", VXM_UINT64}, {"Int64", VXM_INT64},
-             {"Float32", VXM_FLOAT32}, {"Float64", VXM_FLOAT64}};
+static const vxm_vtk_type types[] = {
+    {"UInt8", VXM_UINT8},     {"Int8", VXM_INT8},       {"UInt16", VXM_UINT16}, {"Int16", VXM_INT16},
+    {"UInt32", VXM_UINT32},   {"Int32", VXM_INT32},     {"UInt64", VXM_UINT64}, {"Int64", VXM_INT64},
+    {"Float32", VXM_FLOAT32}, {"Float64", VXM_FLOAT64}, {NULL, VXM_UINT8}};
 
-enum { TYPES = sizeof types / sizeof types[0], TAG_MAX = 2048, VALUE_MAX = 256, XML_MAX = 1 << 20 };
+enum { TAG_MAX = 2048, VALUE_MAX = 256, XML_MAX = 1 << 20 };
 
 /* ---- Reading: the few tags that matter ---- */
 
@@ -133,18 +131,13 @@ static vxm_status take_image(scan *s, const char *tag, size_t at, vxm_error *err
 
 static vxm_status take_array(scan *s, const char *tag, size_t at, vxm_error *error) {
   char value[VALUE_MAX];
-  bool is_known = false;
   if (!find_value(value, tag, "format") || strcmp(value, "appended") != 0)
     return fail_xml(s, at, "its values stand within the XML; write them appended, as raw bytes", error);
   if (find_value(value, tag, "Name"))
     snprintf(s->image.name, sizeof s->image.name, "%.63s", value);
   s->image.components = find_value(value, tag, "NumberOfComponents") ? (int)strtol(value, NULL, 10) : 1;
   s->offset = find_value(value, tag, "offset") ? strtoull(value, NULL, 10) : 0;
-  for (size_t t = 0; t < TYPES && find_value(value, tag, "type"); t++)
-    if (strcmp(value, types[t].name) == 0) {
-      s->image.scalar = types[t].scalar;
-      is_known = true;
-    }
+  bool is_known = find_value(value, tag, "type") && vxm_vtk_type_find(&s->image.scalar, types, value);
   return is_known ? VXM_OK : fail_xml(s, at, "an array of numbers is expected, up to 64 bits", error);
 }
 
@@ -336,13 +329,6 @@ static bool sniff(const vxm_input *input) {
 
 /* ---- Writing ---- */
 
-static const char *type_name(vxm_scalar scalar) {
-  for (size_t t = 0; t < TYPES; t++)
-    if (types[t].scalar == scalar)
-      return types[t].name;
-  return "";
-}
-
 static void put_extent(vxm_output *output, const vxm_space *s) {
   vxm_output_printf(output, "\"0 %" PRId64 " 0 %" PRId64 " 0 %" PRId64 "\"", s->dims[0], s->dims[1],
                     s->dims[2]);
@@ -363,7 +349,7 @@ static void put_xml(vxm_values_writer *w) {
                     ">\n      <CellData Scalars=\"%s\">\n        <DataArray type=\"%s\" Name=\"%s\" "
                     "NumberOfComponents=\"%d\" format=\"appended\" offset=\"0\"/>\n      </CellData>\n"
                     "    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _",
-                    name, type_name(w->values.scalar), name, w->values.channels);
+                    name, vxm_vtk_type_name(types, w->values.scalar), name, w->values.channels);
 }
 
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {

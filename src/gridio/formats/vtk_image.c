@@ -6,6 +6,22 @@
 
 static const char bits_name[] = "solid";
 
+bool vxm_vtk_type_find(vxm_scalar *out, const vxm_vtk_type *types, const char *name) {
+  for (; types->name; types++)
+    if (strcmp(name, types->name) == 0) {
+      *out = types->scalar;
+      return true;
+    }
+  return false;
+}
+
+const char *vxm_vtk_type_name(const vxm_vtk_type *types, vxm_scalar scalar) {
+  for (; types->name; types++)
+    if (types->scalar == scalar)
+      return types->name;
+  return "";
+}
+
 const char *vxm_vtk_array_name(const vxm_values_spec *values) {
   return values->is_bits ? bits_name : vxm_field_kind_name(values->about->kind);
 }

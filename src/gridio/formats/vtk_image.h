@@ -18,6 +18,17 @@ typedef struct vxm_vtk_image {
   char name[64]; /**< of the array, cut */
 } vxm_vtk_image;
 
+/** A name that a format has for a type; lists end with NULL. */
+typedef struct vxm_vtk_type {
+  const char *name;
+  vxm_scalar scalar;
+} vxm_vtk_type;
+
+/** The type of a name; false if no type of a list has it. */
+bool vxm_vtk_type_find(vxm_scalar *out, const vxm_vtk_type *types, const char *name);
+/** The first name of a type; "" if a list has none. */
+const char *vxm_vtk_type_name(const vxm_vtk_type *types, vxm_scalar scalar);
+
 /** The name of the array of values, which tells their kind. */
 const char *vxm_vtk_array_name(const vxm_values_spec *values);
 /** Makes a raster of an image, and of the array's name what the values are. @param at for messages */

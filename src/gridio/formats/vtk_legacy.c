@@ -10,18 +10,15 @@
 #include <string.h>
 
 /** VTK's names of the types. */
-static const struct {
-  const char *name;
-  vxm_scalar scalar;
-} types[] = {{"unsigned_char", VXM_UINT8}, {"signed_char", VXM_INT8},
-             {"char", VXM_INT8},           {"unsigned_short", VXM_UINT16},
-             {"short", VXM_INT16},         {"unsigned_int", VXM_UINT32},
-             {"int", VXM_INT32},           {"vtktypeuint64", VXM_UINT64},
-             {"vtktypeint64", VXM_INT64},  {"unsigned_long", VXM_UINT64},
-             {"long", VXM_INT64},          {"float", VXM_FLOAT32},
-             {"double", VXM_FLOAT64}};
+static const vxm_vtk_type types[] = {{"unsigned_char", VXM_UINT8}, {"signed_char", VXM_INT8},
+                                     {"char", VXM_INT8},           {"unsigned_short", VXM_UINT16},
+                                     {"short", VXM_INT16},         {"unsigned_int", VXM_UINT32},
+                                     {"int", VXM_INT32},           {"vtktypeuint64", VXM_UINT64},
+                                     {"vtktypeint64", VXM_INT64},  {"unsigned_long", VXM_UINT64},
+                                     {"long", VXM_INT64},          {"float", VXM_FLOAT32},
+                                     {"double", VXM_FLOAT64},      {NULL, VXM_UINT8}};
 
-enum { TYPES = sizeof types / sizeof types[0], LINE_MAX_BYTES = 256, LINES_MAX = 64 };
+enum { LINE_MAX_BYTES = 256, LINES_MAX = 64 };
 
 static const char signature[] = "# vtk DataFile Version";
 
@@ -95,14 +92,10 @@ static vxm_status take_dims(scan *s, vxm_error *error) {
 }
 
 static vxm_status take_type(scan *s, const char *name, vxm_error *error) {
-  for (size_t t = 0; t < TYPES; t++)
-    if (strcmp(name, types[t].name) == 0) {
-      s->image.scalar = types[t].scalar;
-      s->has_array = true;
-      return VXM_OK;
-    }
-  return vxm_fail_byte(error, s->input, s->at, "its values are of the type \"%.40s\"; numbers are expected",
-                       name);
+  s->has_array = vxm_vtk_type_find(&s->image.scalar, types, name);
+  return s->has_array ? VXM_OK
+                      : vxm_fail_byte(error, s->input, s->at,
+                                      "its values are of the type \"%.40s\"; numbers are expected", name);
 }
 
 /** "SCALARS name type [components]", and the line of the table behind it. */
@@ -220,13 +213,6 @@ static bool sniff(const vxm_input *input) {
 
 /* ---- Writing ---- */
 
-static const char *type_name(vxm_scalar scalar) {
-  for (size_t t = 0; t < TYPES; t++)
-    if (types[t].scalar == scalar)
-      return types[t].name;
-  return "";
-}
-
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   const vxm_space *s = &w->space;
   const char *name = vxm_vtk_array_name(&w->values);
@@ -245,7 +231,7 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
     vxm_output_printf(w->output, "COLOR_SCALARS %s 4\n", name);
   else
     vxm_output_printf(w->output, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", name,
-                      type_name(w->values.scalar));
+                      vxm_vtk_type_name(types, w->values.scalar));
   uselocale(previous);
   freelocale(c);
   return VXM_OK;

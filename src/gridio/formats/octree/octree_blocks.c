@@ -34,9 +34,7 @@ static void add_full(walk *w, int level, const int64_t at[3]) {
   }
   for (unsigned child = 0; child < 64; child++) {
     int64_t place[3];
-    vxm_octree_place(child, place);
-    for (int a = 0; a < 3; a++)
-      place[a] = at[a] + place[a] * side;
+    vxm_octree_child_at(place, at, child, side);
     add_full(w, level - 1, place);
   }
 }
@@ -51,9 +49,7 @@ static void walk_node(walk *w, int level, size_t index, const int64_t at[3]) {
   for (uint64_t left = node->mixed | node->full; left; left &= left - 1) {
     unsigned child = (unsigned)__builtin_ctzll(left);
     int64_t place[3];
-    vxm_octree_place(child, place);
-    for (int a = 0; a < 3; a++)
-      place[a] = at[a] + place[a] * side;
+    vxm_octree_child_at(place, at, child, side);
     if (node->full >> child & 1)
       add_full(w, level - 1, place);
     else

@@ -203,9 +203,7 @@ static vxm_octree_state load_node(load *l, int level, size_t index, const int64_
     unsigned child = (unsigned)__builtin_ctzll(left);
     vxm_octree_state cell = VXM_OCTREE_FULL;
     int64_t place[3];
-    vxm_octree_place(child, place);
-    for (int a = 0; a < 3; a++)
-      place[a] = at[a] + place[a] * side;
+    vxm_octree_child_at(place, at, child, side);
     if (!vxm_cube_meets(place, side, l->begin, l->end))
       continue;
     if (node->mixed >> child & 1)

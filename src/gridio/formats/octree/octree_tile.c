@@ -75,11 +75,9 @@ static bool is_inside(const vxm_sparse *sparse, int level, size_t index, const i
     const int64_t *n = sparse->space.dims;
     int64_t place[3];
     bool mixed = node->mixed >> child & 1, whole = true;
-    vxm_octree_place(child, place);
-    for (int a = 0; a < 3; a++) {
-      place[a] = at[a] + place[a] * side;
+    vxm_octree_child_at(place, at, child, side);
+    for (int a = 0; a < 3; a++)
       whole &= place[a] + side <= n[a];
-    }
     if (whole)
       continue;
     if (!mixed)

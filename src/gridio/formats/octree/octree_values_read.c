@@ -155,12 +155,6 @@ static int64_t side_of(int level) {
   return level < 0 ? 4 : vxm_octree_side(level + 1);
 }
 
-static void child_place(int64_t out[3], const int64_t at[3], int level, unsigned child) {
-  vxm_octree_place(child, out);
-  for (int a = 0; a < 3; a++)
-    out[a] = at[a] + out[a] * side_of(level - 1);
-}
-
 static uint64_t bits_of(const decoder *d, vxm_octree_part brick) {
   return brick.kind == VXM_OCTREE_MIXED ? d->tree->bricks[brick.index] : ~UINT64_C(0);
 }
@@ -182,7 +176,7 @@ static void fill(const decoder *d, int level, vxm_octree_part part, const int64_
   for (uint64_t left = vxm_octree_children(d->tree, level, part); left; left &= left - 1) {
     unsigned child = (unsigned)__builtin_ctzll(left);
     int64_t place[3];
-    child_place(place, at, level, child);
+    vxm_octree_child_at(place, at, child, vxm_octree_side(level));
     fill(d, level - 1, vxm_octree_child_part(d->tree, level, part, child), place, value);
   }
 }
@@ -237,7 +231,7 @@ static const unsigned char *decode(decoder *d, int level, vxm_octree_part part, 
        left &= left - 1) {
     unsigned child = (unsigned)__builtin_ctzll(left);
     int64_t place[3];
-    child_place(place, at, level, child);
+    vxm_octree_child_at(place, at, child, vxm_octree_side(level));
     const unsigned char *other =
         decode(d, level - 1, vxm_octree_child_part(d->tree, level, part, child), place);
     value = is_first ? other : value;
