@@ -137,7 +137,8 @@ static const cli_option known_options[] = {
      "--locate and --list (CGAL). With --union and --level solid they are\n"
      "counted in any case",
      CLI_FLAG(request, defects.intersections)},
-    {0, "ascii", NULL, "write .stl and .ply as text rather than binary", CLI_FLAG(request, write.ascii)},
+    {0, "ascii", NULL, "write .stl and .ply as text rather than binary; .off and .obj are text anyway",
+     CLI_FLAG(request, write.ascii)},
     {0, "polygons", "split|keep",
      "split = write triangles, as many programs read nothing else; keep = leave\n"
      "polygons as they are in .off, .obj and .ply [split]",
@@ -152,10 +153,12 @@ static int check_conflicts(cli_run *cli, const request *given) {
   if (repair->keep_orientation && repair->level > VXM_LEVEL_CLEAN)
     return cli_usage(cli, "--level %s turns faces; leave out --keep-orientation",
                      repair_levels[repair->level]);
-  if (repair->wrap_alpha > 0 && (repair->fill_holes != 0 || cli_is_given(cli, "fill") ||
-                                 repair->boolean_union || repair->max_change > 0))
-    return cli_usage(cli, "--wrap makes a new surface, without holes or parts to compare; leave out "
-                          "--fill-holes, --fill, --union and --max-change");
+  if (repair->wrap_alpha > 0 &&
+      (repair->fill_holes != 0 || cli_is_given(cli, "fill") || repair->boolean_union ||
+       repair->max_change > 0 || repair->keep_duplicates || repair->keep_orientation))
+    return cli_usage(
+        cli, "--wrap makes a new surface, without holes, parts to compare or faces to keep; leave out "
+             "--fill-holes, --fill, --union, --max-change, --keep-duplicates and --keep-orientation");
   if (cli_is_given(cli, "fill") && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
   if (repair->fallback_alpha > 0 &&
