@@ -25,7 +25,7 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         mesh: Mesh, path, open file, (vertices, faces), or a mesh of trimesh, open3d, pyvista or meshio.
         level: how far to go: "clean", "manifold", "closed" or "solid" (which needs the module for CGAL).
         weld: "auto", "off", or a distance in model units, within which no two vertices are left.
-        keep_duplicates, keep_orientation: leave repeated faces in, and faces turned as they are.
+        keep_duplicates, keep_orientation: leave repeated faces in, and faces turned as they are; not with `wrap_alpha`.
         fill_holes: those of at most so many edges; a negative number or "all" is all.
         fill: with what: "fan", "minimal" (needs OpenMesh) or "smooth" (needs CGAL).
         union: unite closed parts that cut through each other, as "solid" does (needs CGAL).

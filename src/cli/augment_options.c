@@ -5,20 +5,6 @@
 
 #include <string.h>
 
-static int take_part(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  double *out = member;
-  if (cli_read_number(out, value) && *out >= 0 && *out <= 1)
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a number from 0 to 1", option->name, value);
-}
-
-static int take_scale(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  double *scale = member;
-  if (cli_read_number(scale, value) && *scale >= 0 && *scale < 1)
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a number from 0 to below 1", option->name, value);
-}
-
 static int take_rotate(cli_run *cli, const cli_option *option, const char *value, void *request) {
   augment_request *out = request;
   static const char *const names[] = {"none", "any", "x", "y", "z", NULL};
@@ -102,7 +88,7 @@ const cli_option augment_options[] = {
      "a file, one after another: nine numbers each, row after row [none]",
      CLI_VALUES(take_rotate)},
     {0, "scale", "F", "scale each axis by a factor of its own, from 1 - F to 1 + F; F below 1 [0]",
-     CLI_VALUE(take_scale, augment_request, sampler.scale)},
+     CLI_REAL(augment_request, sampler.scale, 0, CLI_BELOW_1, "a number from 0 to below 1")},
     {0, "displace", "F[,normal]",
      "displace vertices along each axis by up to this part of the width of the grid;\n"
      "with normal, by a normal distribution of that deviation [0]",
@@ -112,7 +98,7 @@ const cli_option augment_options[] = {
     {0, "mirror", "AXES", "mirror half of the variants along each of these axes, such as x or xyz",
      CLI_VALUE(take_mirror, augment_request, sampler.mirror)},
     {0, "translate", "F", "move by up to this part, 0 to 1, of the room on each side [0]",
-     CLI_VALUE(take_part, augment_request, sampler.translate)},
+     CLI_REAL(augment_request, sampler.translate, 0, 1, "a number from 0 to 1")},
     {0, "fill", NULL, "the longest side fills the grid, not the diagonal; without --rotate only",
      CLI_FLAG(augment_request, sampler.fill)},
     {0, "mode", "solid|surface|both", "as in 'voxmend voxelize' [solid]",

@@ -70,13 +70,6 @@ static int take_memory(cli_run *cli, const cli_option *option, const char *value
   return cli_take_size(cli, option, value, &cli->limits.memory_limit);
 }
 
-static int take_seconds(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  double *seconds = member;
-  if (cli_read_number(seconds, value) && *seconds >= 0 && *seconds < 1e9)
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a number of seconds", option->name, value);
-}
-
 /** All but .png, which is a file for each slice. */
 static cli_formats grid_formats(void) {
   return cli_formats_without(cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_COLORS), "png");
@@ -165,7 +158,7 @@ const cli_option batch_options[] = {
     {'j', "jobs", "N", "meshes at a time [one per processor]", CLI_NUMBER(batch_request, jobs, 1, 512)},
     {0, "threads", "N", "threads for each mesh, 1 to 256 [1]", CLI_NUMBER(batch_request, threads, 1, 256)},
     {0, "time-limit", "SECONDS", "end a mesh that takes longer; 0 = never [300]",
-     CLI_VALUE(take_seconds, batch_request, time_limit)},
+     CLI_REAL(batch_request, time_limit, 0, 1e9, "a number of seconds")},
     {0, "memlimit", "SIZE",
      "end a mesh that takes more memory, such as 512M or 4G [four fifths of the\n"
      "memory over -j; what needs more runs once more, alone, with all of it]",

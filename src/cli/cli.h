@@ -34,6 +34,8 @@ typedef struct cli_target {
   bool is_of_run;   /**< or in cli_run */
   const char *const *choices;
   int64_t min, max; /**< of a number; min is what the first choice stands for, too */
+  double low, high; /**< of a real number */
+  const char *what; /**< of a real number: its meaning and range, for who gives another */
 } cli_target;
 
 /** A row of a command's table, which serves getopt, the help and the reading; option_tables.h has the macros
@@ -162,7 +164,7 @@ bool cli_start(cli_run *cli);
 /* ---- option_values.c ---- */
 
 /* Readers of the tables: of one of the choices, a number from min to max, bytes, ... */
-cli_reader cli_take_flag, cli_take_text, cli_take_choice, cli_take_number, cli_take_size, cli_take_deflection;
+cli_reader cli_take_flag, cli_take_text, cli_take_choice, cli_take_number, cli_take_real, cli_take_size;
 /** The choices of options that several commands have; NULL ends each list. */
 extern const char *const cli_axes[], *const cli_external_files[], *const cli_polygon_kinds[];
 

@@ -129,13 +129,6 @@ static int take_threads(cli_run *cli, const cli_option *option, const char *text
   return cli_usage(cli, "--%s '%s' is not a list such as 1,2 of numbers from 1 to 256", option->name, text);
 }
 
-static int take_displace(cli_run *cli, const cli_option *option, const char *text, void *member) {
-  double *displace = member;
-  if (cli_read_number(displace, text) && *displace >= 0 && *displace <= 0.4)
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a number from 0 to 0.4", option->name, text);
-}
-
 static int take_time(cli_run *cli, const cli_option *option, const char *text, void *member) {
   int64_t time;
   if (!cli_read_integer(&time, text, 0, 3600000))
@@ -163,7 +156,7 @@ static const cli_option known_options[] = {
     {0, "augment", NULL, "measure making variants for training instead: the augment_ phases below",
      CLI_FLAG(bench_plan, augment)},
     {0, "displace", "F", "by how much the vertices of variants are displaced, as in augment [0.01]",
-     CLI_VALUE(take_displace, bench_plan, displace)},
+     CLI_REAL(bench_plan, displace, 0, 0.4, "a number from 0 to 0.4")},
     {0, "cpu", "LEVEL",
      "use the vectors of such processors and no higher: plain (SSE2), avx2 or avx512; what\n"
      "is made is the same [the highest that this processor has]",

@@ -213,6 +213,8 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
     return cli_usage(cli, "a mesh or grid is missing");
   if (wanted->locate && cli->argument_count > 1)
     return cli_usage(cli, "--locate is for one mesh, not %d", cli->argument_count);
+  if (cli_is_given(cli, "force") && !wanted->locate)
+    return cli_usage(cli, "--force goes with --locate");
   for (int i = 0; i < cli->argument_count; i++)
     if ((wanted->locate || wanted->list || wanted->intersections) && cli_is_grid_name(cli->arguments[i]))
       return cli_usage(cli, "--locate, --list and --intersections are for meshes, and %s is a grid",

@@ -39,7 +39,8 @@ static const cli_option known_options[] = {
      "walls two thirds of a voxel thick or more; keep and 26 are the same here\n"
      "[keep]",
      CLI_CHOICE_FROM(VXM_THIN_KEEP, request, voxelize.thin, cli_thin_parts)},
-    {0, "ascii", NULL, "write .stl and .ply as text rather than binary", CLI_FLAG(request, write.ascii)},
+    {0, "ascii", NULL, "write .stl and .ply as text rather than binary; .off and .obj are text anyway",
+     CLI_FLAG(request, write.ascii)},
     {0, "format", "F", "off, obj, stl or ply [by the name of the output]", CLI_TEXT(request, write.format)},
     CLI_OPTION_FORCE,
     CLI_OPTIONS_READ,

@@ -64,18 +64,6 @@ static int take_fallback(cli_run *cli, const cli_option *option, const char *val
   return CLI_END;
 }
 
-static int take_thickness(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  if (cli_read_number(member, value) && *(double *)member > 0)
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a length above 0, such as 0.5", option->name, value);
-}
-
-static int take_max_change(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  if (cli_read_number(member, value) && *(double *)member > 0)
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a fraction above 0, such as 0.01", option->name, value);
-}
-
 static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
 static const char *const sheets[] = {"thicken", "keep", "drop", NULL};
 
@@ -118,7 +106,7 @@ static const cli_option known_options[] = {
      "not reached [thicken]",
      CLI_CHOICE(request, repair.sheets, sheets)},
     {0, "thickness", "T", "how thick, in model units; at most the model's diagonal [0.002 of that]",
-     CLI_VALUE(take_thickness, request, repair.thickness)},
+     CLI_REAL(request, repair.thickness, CLI_ABOVE_0, DBL_MAX, "a length above 0, such as 0.5")},
     {0, "drop-parts", "faces:N|volume:V",
      "drop components with fewer than N faces, or closed ones with less volume\n"
      "than V, in model units cubed; may be given twice, once for each. The\n"
@@ -139,7 +127,7 @@ static const cli_option known_options[] = {
     {0, "max-change", "F",
      "fail if the volume of a closed part, or the bounds of one, change by more\n"
      "than this fraction, such as 0.01",
-     CLI_VALUE(take_max_change, request, repair.max_change)},
+     CLI_REAL(request, repair.max_change, CLI_ABOVE_0, DBL_MAX, "a fraction above 0, such as 0.01")},
     {0, "locate", "FILE.ply", "show what was wrong, in colour on the mesh as it was read",
      CLI_TEXT(request, defects.locate)},
     {0, "list", "N", "list what was wrong, up to N of each kind",
@@ -149,7 +137,8 @@ static const cli_option known_options[] = {
      "--locate and --list (CGAL). With --union and --level solid they are\n"
      "counted in any case",
      CLI_FLAG(request, defects.intersections)},
-    {0, "ascii", NULL, "write .stl and .ply as text rather than binary", CLI_FLAG(request, write.ascii)},
+    {0, "ascii", NULL, "write .stl and .ply as text rather than binary; .off and .obj are text anyway",
+     CLI_FLAG(request, write.ascii)},
     {0, "polygons", "split|keep",
      "split = write triangles, as many programs read nothing else; keep = leave\n"
      "polygons as they are in .off, .obj and .ply [split]",
@@ -164,10 +153,12 @@ static int check_conflicts(cli_run *cli, const request *given) {
   if (repair->keep_orientation && repair->level > VXM_LEVEL_CLEAN)
     return cli_usage(cli, "--level %s turns faces; leave out --keep-orientation",
                      repair_levels[repair->level]);
-  if (repair->wrap_alpha > 0 && (repair->fill_holes != 0 || cli_is_given(cli, "fill") ||
-                                 repair->boolean_union || repair->max_change > 0))
-    return cli_usage(cli, "--wrap makes a new surface, without holes or parts to compare; leave out "
-                          "--fill-holes, --fill, --union and --max-change");
+  if (repair->wrap_alpha > 0 &&
+      (repair->fill_holes != 0 || cli_is_given(cli, "fill") || repair->boolean_union ||
+       repair->max_change > 0 || repair->keep_duplicates || repair->keep_orientation))
+    return cli_usage(
+        cli, "--wrap makes a new surface, without holes, parts to compare or faces to keep; leave out "
+             "--fill-holes, --fill, --union, --max-change, --keep-duplicates and --keep-orientation");
   if (cli_is_given(cli, "fill") && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
   if (repair->fallback_alpha > 0 &&

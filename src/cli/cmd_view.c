@@ -79,19 +79,6 @@ static int take_slice(cli_run *cli, const cli_option *option, const char *value,
   return cli_usage(cli, "--%s '%s' is not x=S, y=S or z=S with S from 0 to 1", option->name, value);
 }
 
-static int take_azimuth(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  if (cli_read_number(member, value))
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a number of degrees", option->name, value);
-}
-
-static int take_elevation(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  double *elevation = member;
-  if (cli_read_number(elevation, value) && *elevation >= -90 && *elevation <= 90)
-    return CLI_END;
-  return cli_usage(cli, "--%s '%s' is not a number of degrees from -90 to 90", option->name, value);
-}
-
 static const cli_option known_options[] = {
     {'o', "output", "FILE", "picture (.png), or page for a browser (.html), to write",
      CLI_TEXT(request, output)},
@@ -105,9 +92,9 @@ static const cli_option known_options[] = {
      CLI_VALUE(take_slice, request, picture)},
     {0, "size", "WxH", "pixels, each from 1 to 16384 [800x600]", CLI_VALUE(take_size, request, picture)},
     {0, "azimuth", "DEGREES", "direction to look from, about the up axis [30]",
-     CLI_VALUE(take_azimuth, request, picture.azimuth)},
+     CLI_REAL(request, picture.azimuth, -DBL_MAX, DBL_MAX, "a number of degrees")},
     {0, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]",
-     CLI_VALUE(take_elevation, request, picture.elevation)},
+     CLI_REAL(request, picture.elevation, -90, 90, "a number of degrees from -90 to 90")},
     {0, "up", "x|y|z", "axis that points up [by the format of a mesh, else z]",
      CLI_CHOICE_FROM(1, request, picture.up, cli_axes)},
     CLI_OPTIONS_THRESHOLD(request),

@@ -32,13 +32,6 @@ int cli_take_subdivision(cli_run *cli, const cli_option *option, const char *val
   return CLI_END;
 }
 
-int cli_take_band(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  double *band = member;
-  if (!cli_read_number(band, value) || *band < 0)
-    return cli_usage(cli, "--%s '%s' is not a number of voxels from 0 on", option->name, value);
-  return CLI_END;
-}
-
 int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure) {
   const char *name = field->coverage   ? "coverage"
                      : field->distance ? "distance"

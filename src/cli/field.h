@@ -33,8 +33,8 @@ cli_formats cli_field_formats(const cli_field *field);
 bool cli_field_wanted(const cli_field *field);
 /** Choices of --scalar (the first is VXM_FLOAT32), --distance and --labels; NULL ends each list. */
 extern const char *const cli_scalars[], *const cli_signs[], *const cli_label_kinds[];
-/** Of --coverage 2|4|8, into an int; of --band, into a double; of --color, into a cli_field (colors.c). */
-cli_reader cli_take_subdivision, cli_take_band, cli_take_color;
+/** Of --coverage 2|4|8, into an int; of --color, into a cli_field (colors.c). */
+cli_reader cli_take_subdivision, cli_take_color;
 /** Tell what a mesh looks like that was read with its colours; nothing where there is nothing (look.c). */
 void cli_look_json(json_t *report, const vxm_mesh *mesh);
 void cli_look_print(const cli_run *cli, const vxm_mesh *mesh);

@@ -28,16 +28,17 @@ const char **cli_mesh_extensions(void) {
   enum { MOST = 64 };
   vxm_reading_info readers = VXM_READING_INFO_INIT;
   const char **list = calloc(MOST + 1, sizeof *list);
-  char *text = NULL;
+  char own[CLI_LIST_MAX], *text = NULL;
   vxm_reading_find(&readers, NULL);
-  if (!list || asprintf(&text, "off obj stl ply %s %s", readers.assimp ? readers.assimp_formats : "",
-                        readers.occt ? readers.occt_formats : "") < 0) {
+  if (!list ||
+      asprintf(&text, "%s %s %s", cli_list(own, cli_mesh_formats),
+               readers.assimp ? readers.assimp_formats : "", readers.occt ? readers.occt_formats : "") < 0) {
     free(list);
     return NULL;
   }
   int count = 0;
   char *rest = text;
-  for (char *word; count < MOST && (word = strsep(&rest, " "));)
+  for (char *word; count < MOST && (word = strsep(&rest, ", "));)
     if (*word)
       list[count++] = word;
   return list;

@@ -3,6 +3,7 @@
 #ifndef VXM_CLI_OPTION_TABLES_H
 #define VXM_CLI_OPTION_TABLES_H
 
+#include <float.h>
 #include <stddef.h>
 
 /* ---- Targets: a member of the struct `type`, which the command hands to cli_read_options ---- */
@@ -17,6 +18,12 @@
 #define CLI_TEXT(type, member) CLI_VALUE(cli_take_text, type, member)
 #define CLI_SIZE(type, member) CLI_VALUE(cli_take_size, type, member)
 #define CLI_NUMBER(type, member, low, high) CLI_VALUE(cli_take_number, type, member, .min = low, .max = high)
+/** A double; `meant` says what another value is not, such as "a number from 0 to 1". */
+#define CLI_REAL(type, member, from, to, meant) \
+  CLI_VALUE(cli_take_real, type, member, .low = from, .high = to, .what = meant)
+/** The least double above 0, and the greatest below 1. */
+#define CLI_ABOVE_0 DBL_TRUE_MIN
+#define CLI_BELOW_1 (1 - DBL_EPSILON / 2)
 /** The first of the words stands for 0. */
 #define CLI_CHOICE(type, member, words) CLI_VALUE(cli_take_choice, type, member, .choices = words)
 #define CLI_CHOICE_FROM(first, type, member, words) \
@@ -89,7 +96,8 @@
   {0, "deflection", "F",                                                                  \
    "STEP and IGES: how far triangles may lie from a curved surface, as a\n"               \
    "part of the model's diagonal [0.001]",                                                \
-   CLI_RUN_VALUE(cli_take_deflection, read.deflection)},                                  \
+   CLI_RUN_VALUE(cli_take_real, read.deflection, .low = CLI_ABOVE_0, .high = 1,           \
+                 .what = "a number above 0 and up to 1")},                                \
   {                                                                                       \
     0, "external", "folder|any|none",                                                     \
         "glTF and others: which files the mesh may refer to; folder = in its own\n"       \

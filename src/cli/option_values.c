@@ -138,15 +138,17 @@ int cli_take_number(cli_run *cli, const cli_option *option, const char *value, v
   return CLI_END;
 }
 
+int cli_take_real(cli_run *cli, const cli_option *option, const char *value, void *member) {
+  const cli_target *to = &option->to;
+  double number;
+  if (!cli_read_number(&number, value) || number < to->low || number > to->high)
+    return cli_usage(cli, "--%s '%s' is not %s", option->name, value, to->what);
+  *(double *)member = number;
+  return CLI_END;
+}
+
 int cli_take_size(cli_run *cli, const cli_option *option, const char *value, void *member) {
   if (cli_read_size(member, value))
     return CLI_END;
   return cli_usage(cli, "--%s '%s' is not a size such as 512M or 4G", option->name, value);
-}
-
-int cli_take_deflection(cli_run *cli, const cli_option *option, const char *value, void *member) {
-  double *deflection = member;
-  if (!cli_read_number(deflection, value) || *deflection <= 0 || *deflection > 1)
-    return cli_usage(cli, "--%s '%s' is not a number above 0 and up to 1", option->name, value);
-  return CLI_END;
 }

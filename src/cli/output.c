@@ -12,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 /* ---- Messages ---- */
 
@@ -151,9 +150,7 @@ const char *cli_shown(const char *path, const char *standard) {
 }
 
 double cli_clock(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+  return batch_clock_ms();
 }
 
 /* ---- JSON ---- */

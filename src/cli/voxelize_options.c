@@ -133,7 +133,7 @@ const cli_option voxelize_options[] = {
      ".h5 or .zarr",
      CLI_CHOICE(voxelize_request, field.distance_options.is_unsigned, cli_signs)},
     {0, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]",
-     CLI_VALUE(cli_take_band, voxelize_request, field.distance_options.band)},
+     CLI_REAL(voxelize_request, field.distance_options.band, 0, DBL_MAX, "a number of voxels from 0 on")},
     {0, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on:\n"
      "bodies fill what they enclose, patches of a surface have the voxels at it;\n"

@@ -214,3 +214,10 @@ vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_spac
   vxm_status status = choose(out, soup, options, error);
   return status == VXM_OK ? vxm_space_check_sizes(out, error) : status;
 }
+
+double vxm_space_longest_side(const vxm_space *space) {
+  double longest = 0;
+  for (int a = 0; a < 3; a++)
+    longest = fmax(longest, (double)space->dims[a] * space->voxel_size[a]);
+  return longest;
+}

@@ -10,4 +10,7 @@
 vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,
                             vxm_error *error);
 
+/** The longest side of the whole, model units. */
+double vxm_space_longest_side(const vxm_space *space);
+
 #endif

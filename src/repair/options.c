@@ -28,11 +28,13 @@ vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: wrap %g, %g; both are fractions of the diagonal, 0 to 1", options->wrap_alpha,
                     options->wrap_offset);
-  if (options->wrap_alpha > 0 && (options->fill_holes != 0 || options->hole_fill != VXM_HOLE_FILL_FAN ||
-                                  options->boolean_union || options->max_change > 0))
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "repair: a wrap makes a new surface, without holes or parts to compare; leave out "
-                    "fill_holes, hole_fill, boolean_union and max_change");
+  if (options->wrap_alpha > 0 &&
+      (options->fill_holes != 0 || options->hole_fill != VXM_HOLE_FILL_FAN || options->boolean_union ||
+       options->max_change > 0 || options->keep_duplicates || options->keep_orientation))
+    return vxm_fail(
+        error, VXM_ERROR_ARGUMENT,
+        "repair: a wrap makes a new surface, without holes, parts to compare or faces to keep; leave out "
+        "fill_holes, hole_fill, boolean_union, max_change, keep_duplicates and keep_orientation");
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);

@@ -110,9 +110,8 @@ VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
  * unsigned bytes of which some are 0 and the others 255. Distances and confidences, and colours, never are.
  *
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_NUMBERS for other numbers, which
- *         vxm_field_read reads; VXM_ERROR_UNAVAILABLE for .vdb without OpenVDB, and for compressed .nrrd
- *         without zlib; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
- *         VXM_ERROR_CANCELLED
+ *         vxm_field_read reads; VXM_ERROR_UNAVAILABLE if the library that the format needs is not
+ *         there; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
 
@@ -140,8 +139,8 @@ typedef struct vxm_grid_write_options {
  * side.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format, or .binvox with voxels that are not cubes;
- * VXM_ERROR_UNAVAILABLE for .vdb without OpenVDB; VXM_ERROR_IO; VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
- * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * VXM_ERROR_UNAVAILABLE if the library that the format needs is not there; VXM_ERROR_IO; VXM_ERROR_RANGE,
+ * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
                                   const vxm_grid_write_options *options, vxm_error *error);

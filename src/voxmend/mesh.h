@@ -149,14 +149,15 @@ typedef struct vxm_reading_info {
 #define VXM_READING_INFO_INIT \
   { sizeof(vxm_reading_info), false, false, NULL, NULL, false, 0 }
 
-/** @return VXM_OK, VXM_ERROR_ARGUMENT */
+/** Tells which modules are there to read them, and what their process may do. @return VXM_OK,
+ * VXM_ERROR_ARGUMENT */
 VXM_API vxm_status vxm_reading_find(vxm_reading_info *out, vxm_error *error);
 
 /** How a mesh file is written. */
 typedef struct vxm_mesh_write_options {
   size_t size;        /**< as the initializer sets it */
   const char *format; /**< "off", "obj", "stl" or "ply"; NULL = by the extension of the path */
-  bool ascii;         /**< stl and ply as text rather than binary */
+  bool ascii;         /**< stl and ply as text rather than binary; off and obj are text anyway */
   bool keep_polygons; /**< off, obj and ply with polygons as they are, rather than as triangles */
 } vxm_mesh_write_options;
 
@@ -252,7 +253,8 @@ typedef struct vxm_census {
 #define VXM_CENSUS_INIT \
   { sizeof(vxm_census), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, false, false, {0, 0, 0, 0, 0, 0}, 0.0, 0.0 }
 
-/** @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED */
+/** Counts what a mesh has, and what is wrong with it. @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED */
 VXM_API vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error);
 
 #ifdef __cplusplus

@@ -42,7 +42,7 @@ typedef enum vxm_hole_fill {
   VXM_HOLE_FILL_MINIMAL, /**< the triangulation of the rim with the least area; needs the module for OpenMesh
                           */
   VXM_HOLE_FILL_SMOOTH /**< triangles as small as those about the rim, which continue its curvature; needs the
-                     module for   CGAL */
+                          module for CGAL */
 } vxm_hole_fill;
 
 /** What becomes of open sheets: components of which closing would fill holes that cover three quarters of
@@ -66,7 +66,8 @@ typedef struct vxm_repair_options {
   vxm_hole_fill hole_fill; /**< with what */
   bool boolean_union;      /**< unite closed parts that cut through each other, as VXM_LEVEL_SOLID does */
   double wrap_alpha;  /**< put a closed surface around everything instead: the size of the smallest hole that
-                         it goes  into, as a fraction of the diagonal of the bounds; 0 = do not */
+                         it goes into, as a fraction of the diagonal of the bounds; 0 = do not. Excludes
+                         keep_duplicates, keep_orientation, fill_holes, hole_fill, boolean_union, max_change */
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
   bool single_precision; /**< keep to positions that 32-bit floats hold, as .stl files do */
   bool part_changes;     /**< keep account of every part: vxm_mesh_part_change */
@@ -119,9 +120,8 @@ typedef struct vxm_repair_report {
                              which have no inside, and those where the union failed */
   int64_t union_tries; /**< how often parts were united at VXM_LEVEL_SOLID; above 1 slivers were in the way */
   int64_t wrapped_parts;             /**< that could not be united, and were wrapped (fallback_alpha) */
-  int64_t self_intersections_before; /**< pairs of faces, counted up to
-                                                                  VXM_SELF_INTERSECTIONS_MAX; -1 = not looked
-                                                                  for */
+  int64_t self_intersections_before; /**< pairs of faces, counted up to VXM_SELF_INTERSECTIONS_MAX; -1 = not
+                                        looked for */
   int64_t self_intersections_after;  /**< in the same way */
   int64_t
       unparted_vertices; /**< that share a position, or would after rounding to 1e-8, and could not be moved
@@ -137,10 +137,8 @@ typedef struct vxm_repair_report {
                            options.part_changes, else 0 */
   vxm_census *before;      /**< set by the caller: NULL, or where the census of the mesh that is given goes */
   vxm_census *after; /**< set by the caller: NULL, or where that of the result goes; each takes some time */
-  int64_t emptied_parts; /**< closed components of which more than a hundredth of what they enclosed was taken
-                            away by a union, as of those
-                            within the bounds of a cavity
-                            that go with what this takes */
+  int64_t emptied_parts; /**< closed components that lost more than a hundredth of their inside to a union,
+                            such as some that lie in a cavity */
 } vxm_repair_report;
 
 /** Initial value of vxm_repair_report. */
@@ -283,16 +281,16 @@ VXM_API vxm_status vxm_mesh_write_verified(vxm_verification *out, const vxm_mesh
 
 /** What is wrong with a vertex, edge or face. */
 typedef enum vxm_defect_kind {
-  VXM_DEFECT_NONFINITE_VERTEX = 0,
-  VXM_DEFECT_DEGENERATE_FACE,
-  VXM_DEFECT_DUPLICATE_FACE,
-  VXM_DEFECT_BOUNDARY_EDGE,
-  VXM_DEFECT_NONMANIFOLD_EDGE,
-  VXM_DEFECT_INCONSISTENT_EDGE,
-  VXM_DEFECT_NONMANIFOLD_VERTEX, /**< its faces form more than one fan, though none of its edges is at fault
-                                  */
-  VXM_DEFECT_SELF_INTERSECTION,  /**< two faces that cut through each other */
-  VXM_DEFECT_KINDS
+  VXM_DEFECT_NONFINITE_VERTEX = 0, /**< with a coordinate that is not a finite number */
+  VXM_DEFECT_DEGENERATE_FACE,      /**< of finite ones: fewer than three distinct corners, or no area */
+  VXM_DEFECT_DUPLICATE_FACE,       /**< repeats another one, with either orientation */
+  VXM_DEFECT_BOUNDARY_EDGE,        /**< of one face */
+  VXM_DEFECT_NONMANIFOLD_EDGE,     /**< of more than two faces */
+  VXM_DEFECT_INCONSISTENT_EDGE,    /**< of two faces that run along it in the same direction */
+  VXM_DEFECT_NONMANIFOLD_VERTEX,   /**< its faces form more than one fan, though none of its edges is at fault
+                                    */
+  VXM_DEFECT_SELF_INTERSECTION,    /**< two faces that cut through each other */
+  VXM_DEFECT_KINDS                 /**< how many kinds there are */
 } vxm_defect_kind;
 
 /** Something that is wrong with a mesh, and where. */
@@ -323,8 +321,8 @@ VXM_API void vxm_defects_destroy(vxm_defects *defects);
 VXM_API int64_t vxm_defects_count(const vxm_defects *defects);
 /** One of those that are listed; NULL if there is none of this number. */
 VXM_API const vxm_defect *vxm_defects_item(const vxm_defects *defects, int64_t index);
-/** How many of a kind there are, listed or not; self-intersections are counted up to 4194304, -1 = not looked
- * for. */
+/** How many of a kind there are, listed or not; self-intersections are counted up to
+ * VXM_SELF_INTERSECTIONS_MAX, -1 = not looked for. */
 VXM_API int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind);
 /** Fixed name of a kind, such as "boundary_edge". */
 VXM_API const char *vxm_defect_name(vxm_defect_kind kind);

@@ -108,6 +108,8 @@ typedef struct vxm_pose {
 typedef struct vxm_sampler vxm_sampler;
 
 /**
+ * Makes a sampler, which has no models yet (vxm_sampler_put).
+ *
  * @param context NULL = a new one
  * @param options NULL = defaults: no augmentation
  * @return VXM_OK; VXM_ERROR_ARGUMENT, also if pad and displacement leave no room for a model; VXM_ERROR_RANGE

@@ -55,9 +55,10 @@ VXM_API int64_t vxm_sparse_warning_count(const vxm_sparse *sparse);
 /** One of them; "" if there is none of this number. */
 VXM_API const char *vxm_sparse_warning(const vxm_sparse *sparse, int64_t index);
 
-/** @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+/** Makes an octree of the set voxels of a grid. @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT */
 VXM_API vxm_status vxm_sparse_from_grid(vxm_sparse **out, const vxm_grid *grid, vxm_error *error);
-/** A new grid. @return as vxm_grid_create */
+/** Makes a grid of the set voxels of an octree. @return as vxm_grid_create */
 VXM_API vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, vxm_error *error);
 
 /**

@@ -8,8 +8,9 @@ trap 'rm -rf "$work"' EXIT
 mkdir "$work/in" "$work/out"
 "$BUILDDIR/samples/generate_samples" "$work/in"
 
-# interrupted COMMAND...: with a signal after some time. Where it was done before that, nothing is told.
+# interrupted COMMAND...: with a signal after some time. Runs may be done before that, but not all of them.
 interrupted() {
+  ended=0
   for delay in 0.05 0.1 0.2 0.3 0.4; do
     "$VOXMEND" "$@" --threads 1 >/dev/null 2>"$work/err" &
     job=$!
@@ -20,10 +21,12 @@ interrupted() {
     wait "$job" || status=$?
     if [ "$status" -ne 0 ]; then
       [ "$status" -eq 143 ] || { echo "FAILED: exit status $status"; cat "$work/err"; exit 1; }
+      ended=$((ended + 1))
       [ -z "$(ls "$work/out")" ] || { echo "FAILED: left behind:"; ls "$work/out"; exit 1; }
     fi
     rm -f "$work/out/"*
   done
+  [ "$ended" -gt 0 ] || { echo "FAILED: no signal ended voxmend $1"; exit 1; }
 }
 
 interrupted voxelize "$work/in/rocket.off" -o "$work/out/x.rle" -r 1400

@@ -11,6 +11,7 @@ run 'voxmend repair in/cracks.off -o off.off -q --weld off && voxmend info off.o
 run 'voxmend repair in/cracks.off -o eps.off -q --weld 1e-6 && voxmend info eps.off'
 run 'voxmend repair in/repeated.off -o kept.off -q --keep-duplicates && voxmend info kept.off'
 run 'voxmend repair in/l_prism.off -o l.stl --ascii -q && voxmend info l.stl'
+run 'voxmend repair in/l_prism.off -o l.obj --ascii -q && voxmend repair in/l_prism.off -o text.obj -q && cmp l.obj text.obj'
 run 'voxmend repair in/rocket.off -o rocket.stl --ascii -q && voxmend repair rocket.stl -o rocket2.stl --ascii && cmp rocket.stl rocket2.stl'
 run 'voxmend repair in/rocket.off -o binary.stl -q && voxmend repair binary.stl -o text.stl --ascii -q && cmp rocket.stl text.stl'
 # what others write: more digits than a float has, and the fewest that tell a float

@@ -36,6 +36,7 @@ run 'voxmend info --memlimit 0 in/cube.off'
 run 'voxmend info --memlimit 99999999999999T in/cube.off'
 run 'voxmend info --progress sometimes in/cube.off'
 run 'voxmend info --report - in/cube.off'
+run 'voxmend info --force in/cube.off'
 
 for option in --resoluton --resolutoin=64 --size --co --thim --overwrite --x --; do
   run "voxmend voxelize in/cube.off $option"
@@ -69,6 +70,9 @@ run 'voxmend repair in/cube.off -o x.off --weld 1e-3x'
 run 'voxmend repair in/cube.off -o x.off --weld nan'
 run 'voxmend repair in/cube.off -o x.off --level perfect'
 run 'voxmend repair in/cube.off -o x.off --fill soap'
+for options in '--thickness 0' '--max-change -0' '--max-change 1e999' '--wrap 0.1 --keep-duplicates' '--wrap 0.1 --keep-orientation'; do
+  run "voxmend repair in/cube.off -o x.off $options"
+done
 
 say "# voxelize"
 run 'voxmend voxelize in/cube.off'

@@ -439,15 +439,19 @@ static void elements_of_the_file(void **state) {
 static void options_are_checked(void **state) {
   static const double one[1][3] = {{0, 0, 0}};
   vxm_soup *soup = cubes(*state, 1, one, 0);
-  vxm_repair_options keep = VXM_REPAIR_OPTIONS_INIT, wrap = keep, version = keep;
+  vxm_repair_options keep = VXM_REPAIR_OPTIONS_INIT, wrap = keep, version = keep, faces[2] = {keep, keep};
   vxm_verification found = VXM_VERIFICATION_INIT;
   keep.keep_orientation = true;
   keep.level = VXM_LEVEL_CLOSED;
   wrap.wrap_alpha = NAN;
   version.size = 2;
+  faces[0].wrap_alpha = faces[1].wrap_alpha = 0.1; /* whose faces are all new */
+  faces[0].keep_duplicates = faces[1].keep_orientation = true;
   assert_int_equal(vxm_mesh_verify(&found, soup, &keep, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_mesh_verify(&found, soup, &wrap, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_mesh_verify(&found, soup, &version, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_mesh_verify(&found, soup, &faces[0], NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_mesh_verify(&found, soup, &faces[1], NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_mesh_verify(&found, soup, NULL, NULL), VXM_OK);
   vxm_soup_destroy(soup);
 }

@@ -2,6 +2,7 @@
 /** The colour function of Rueda et al. as a fragment shader: slice after slice across x, a fragment per
  * voxel. */
 #include "gpu/opengl/gl_solid.h"
+#include "grid/space.h"
 
 #include <string.h>
 
@@ -27,7 +28,7 @@ static color_job job_of(const vxm_color_job *job) {
     out.size[a] = (float)space->voxel_size[a];
   }
   out.dims[3] = (int32_t)(2 * job->grid->row_words);
-  out.origin[3] = (float)(1 / vxm_color_longest(space));
+  out.origin[3] = (float)(1 / vxm_space_longest_side(space));
   return out;
 }
 

@@ -153,7 +153,7 @@ vxm_status vxm_gl_download(vxm_opengl *engine, vxm_gl_buffer_id id, void *out, s
 
 void vxm_gl_presence_release(vxm_opengl *engine);
 
-/* ---- Slabs (gl_tiles.c) ---- */
+/* ---- Slabs (gl_slabs.c) ---- */
 
 /** How many slices of a window fit a slab. @return VXM_OK; VXM_ERROR_RANGE if not even one does */
 vxm_status vxm_gl_slab_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,

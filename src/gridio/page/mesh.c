@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The mesh of a page: its triangles, and layers of what is wrong with it. */
 #include "base/endian.h"
+#include "grid/space.h"
 #include "gridio/page/changes.h"
 #include "gridio/page/parts.h"
 #include "mesh/components.h"
@@ -29,13 +30,6 @@ typedef struct drawn_mesh {
 } drawn_mesh;
 
 /* ---- Positions ---- */
-
-static double longest_side(const vxm_space *space) {
-  double longest = 0;
-  for (int a = 0; a < 3; a++)
-    longest = fmax(longest, (double)space->dims[a] * space->voxel_size[a]);
-  return longest;
-}
 
 /** A position that is not finite, or too far away, lies at the corner. */
 static void put_position(vxm_pack *pack, const drawn_mesh *d, const double *p) {
@@ -254,7 +248,7 @@ vxm_status vxm_page_put_mesh(vxm_page *page, const vxm_soup *mesh, const vxm_sou
   }
   drawn_mesh d = {.page = page, .soup = mesh, .repaired = repaired, .layers = json_array()};
   json_object_set_new(about, "layers", d.layers);
-  double longest = longest_side(page->space);
+  double longest = vxm_space_longest_side(page->space);
   d.scale = longest > 0 ? 1 / longest : 1;
   vxm_error local = VXM_ERROR_INIT;
   d.flags = vxm_calloc(mesh->context, mesh->face_count, 1, &local);

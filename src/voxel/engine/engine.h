@@ -35,9 +35,6 @@ typedef struct vxm_color_job {
   const vxm_color_options *options;
 } vxm_color_job;
 
-/** The longest side of a space, model units. */
-double vxm_color_longest(const vxm_space *space);
-
 /** Points of triangles to be moved and placed. */
 typedef struct vxm_move_job {
   const vxm_triangle_set *triangles;

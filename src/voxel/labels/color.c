@@ -2,6 +2,7 @@
 #include "voxel/labels/color.h"
 #include "base/task_progress.h"
 #include "base/threads.h"
+#include "grid/space.h"
 #include "voxel/labels/labels.h"
 #include "voxel/labels/mesh_colors.h"
 #include "voxel/model/voxelize.h"
@@ -118,17 +119,11 @@ static void color_slice(size_t i, int worker, void *payload) {
   vxm_task_progress_step(&task->progress);
 }
 
-double vxm_color_longest(const vxm_space *space) {
-  double longest = 0;
-  for (int a = 0; a < 3; a++)
-    longest = fmax(longest, (double)space->dims[a] * space->voxel_size[a]);
-  return longest;
-}
-
 static vxm_status color_by_cpu(uint8_t *values, const vxm_color_job *job, vxm_context *context,
                                vxm_error *error) {
   size_t slices = (size_t)job->grid->space.dims[0];
-  color_task task = {.job = job, .values = values, .longest = (float)vxm_color_longest(&job->grid->space)};
+  color_task task = {
+      .job = job, .values = values, .longest = (float)vxm_space_longest_side(&job->grid->space)};
   if (job->options->by == VXM_COLOR_GLSL)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
                     "a colour function in GLSL needs OpenGL: --engine opengl (vxm_voxelize_options.engine)");

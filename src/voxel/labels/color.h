@@ -12,7 +12,7 @@ bool vxm_color_wants_parts(const vxm_color_options *options);
 /**
  * The colour of a set voxel by a function that is built in, on the CPU.
  *
- * @param longest vxm_color_longest of the space
+ * @param longest vxm_space_longest_side of the space
  * @param part    with VXM_COLOR_PART
  */
 void vxm_color_voxel(uint8_t value[4], vxm_color_by by, const vxm_space *space, float longest,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels/color_nodes.h"
+#include "grid/space.h"
 #include "voxel/labels/mesh_colors.h"
 #include "voxel/sparse/sparse.h"
 
@@ -118,7 +119,7 @@ vxm_status vxm_color_nodes_create(vxm_color_nodes **out, vxm_voxelize_report *re
     n->options = options;
     n->color = color;
     n->payload = payload;
-    n->longest = (float)vxm_color_longest(space);
+    n->longest = (float)vxm_space_longest_side(space);
     n->workers = vxm_context_threads(model->context);
     status = make_voxels(n, report, model, &local);
   }

@@ -155,7 +155,7 @@ static void narrow_box(const vxm_surface_pen *pen, const plane_shape *shape, vxm
   box->end[role] = span.end;
 }
 
-/** Rows m_begin..m_end-1 of slice s: `along` holds for the slice, `rows` for each row from rows_begin on. */
+/** Rows across.begin..across.end-1 of slice s: `along` holds for the slice, `rows` for each of them. */
 static inline void draw_slice(const vxm_surface_pen *pen, const plane_shape *shape, int64_t s,
                               vxm_surface_span across, vxm_surface_span along, const vxm_surface_span *rows) {
   const integer *n = shape->normal;

@@ -40,7 +40,7 @@ static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error 
 static vxm_status read_mask(vxm_grid **out, const vxm_sparse_file *file, vxm_bits_rule rule,
                             vxm_error *error) {
   vxm_field *field;
-  if (rule == VXM_BITS_STORED && (file->channels == 4 || file->scalar != VXM_UINT8)) /* as raster_bits says */
+  if (rule == VXM_BITS_STORED && (file->channels == 4 || file->scalar != VXM_UINT8)) /* as vxm_raster_bits */
     return vxm_fail_numbers(error, file->name,
                             file->channels == 4 ? "colors" : vxm_scalar_name(file->scalar));
   vxm_status status = vxm_octree_values_load(&field, file, (int64_t[3]){0, 0, 0}, file->space.dims, error);
