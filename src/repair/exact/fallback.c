@@ -142,11 +142,11 @@ static vxm_status wrap_marked(vxm_repair_state *state, const uint8_t *faces, vxm
   return status;
 }
 
-/** Wraps the parts that the union had to leave, where that was asked for; they have names still, but no
+/** Wraps the parts that are in the way of a union, where that was asked for; they have names still, but no
  * volumes to compare. */
 vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!(state->options.fallback_alpha > 0) || state->union_failures == 0)
+  if (!(state->options.fallback_alpha > 0))
     return VXM_OK;
   int64_t count = 0;
   vxm_status status = VXM_OK;

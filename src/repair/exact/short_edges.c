@@ -70,7 +70,7 @@ static int by_length(const void *a, const void *b) {
 /** Whether the ends are one vertex to programs that hold 32-bit floats. */
 static bool is_float_point(const collapsing *c, const vxm_edge *edge) {
   const double *a = vxm_position(c->soup, edge->a), *b = vxm_position(c->soup, edge->b);
-  if (c->state->doubles_only)
+  if (c->state->union_try.doubles_only)
     return false;
   for (int i = 0; i < 3; i++)
     if (vxm_merge_coordinate(a[i], VXM_MERGE_FLOAT) != vxm_merge_coordinate(b[i], VXM_MERGE_FLOAT))
@@ -185,7 +185,8 @@ static vxm_status apply(collapsing *c, vxm_error *error) {
 }
 
 static vxm_status collapse(collapsing *c, double diagonal, int64_t *total, vxm_error *error) {
-  const double most = c->state->collapses ? SHORT * diagonal : 0, most_float = SHORT_FLOAT * diagonal;
+  const double most = c->state->union_try.collapses ? SHORT * diagonal : 0,
+               most_float = SHORT_FLOAT * diagonal;
   vxm_status status = VXM_OK;
   *total = 0;
   for (int round = 0; round < ROUNDS && status == VXM_OK; round++) {
