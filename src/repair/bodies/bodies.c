@@ -185,8 +185,8 @@ static bool find_layers(parting *p) {
   l->known = l->front ? scratch(p, faces, sizeof *l->known) : NULL;
   l->cut = l->known ? scratch(p, faces, sizeof *l->cut) : NULL;
   p->failed = l->cut ? scratch(p, p->groups.count, sizeof *p->failed) : NULL;
-  bool done = p->failed && vxm_duplicates_find(&found, p->state->context, p->soup, NULL, kinds, p->copies,
-                                               &p->error) == VXM_OK;
+  bool done = p->failed &&
+              vxm_duplicates_find(&found, p->state->context, p->soup, kinds, p->copies, &p->error) == VXM_OK;
   l->state = p->state;
   l->copies = p->copies;
   l->groups = &p->groups;

@@ -231,7 +231,7 @@ static vxm_status mark_repeated(aligning *a, vxm_error *error) {
     return status;
   kinds = vxm_repair_state_scratch(a->state, some->face_count, sizeof *kinds, &status, error);
   if (kinds)
-    status = vxm_duplicates_find(&found, a->state->context, some, NULL, kinds, NULL, error);
+    status = vxm_duplicates_find(&found, a->state->context, some, kinds, NULL, error);
   for (size_t i = 0; kinds && status == VXM_OK && i < some->face_count; i++)
     a->again[numbers[i]] = kinds[i] != VXM_REPEAT_NONE;
   vxm_free(a->state->context, kinds);
