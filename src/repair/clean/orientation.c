@@ -343,13 +343,8 @@ static void choose_sides(const vxm_containment *containment, const uint8_t *soli
 /** Volume about the middle of the model of all faces as they are by now. */
 static double volume_of_all(const orienting *o) {
   double volume = 0;
-  for (size_t f = 0; f < o->soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(o->soup, f, &count);
-    if (count > 0)
-      volume += vxm_polygon_cone(
-          vxm_vec3_between(vxm_position(o->soup, corner[0]), o->frame.centre, o->frame.scale), area_of(o, f));
-  }
+  for (size_t f = 0; f < o->soup->face_count; f++)
+    volume += vxm_face_cone(NULL, o->soup, f, o->frame.centre, o->frame.scale);
   return volume;
 }
 

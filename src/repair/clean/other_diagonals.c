@@ -241,14 +241,10 @@ static vxm_status mark_repeated(aligning *a, vxm_error *error) {
 }
 
 static void add_volume(aligning *a, size_t face) {
-  size_t count;
-  const uint32_t *corner = vxm_face(a->soup, face, &count);
-  vxm_vec3 area = vxm_polygon_area(a->soup->positions, corner, count, a->frame.scale);
+  vxm_vec3 area;
   group_sums *g = group_of(a, face);
+  g->volume += vxm_face_cone(&area, a->soup, face, a->frame.centre, a->frame.scale);
   g->area += vxm_vec3_length(area);
-  if (count > 0)
-    g->volume += vxm_polygon_cone(
-        vxm_vec3_between(vxm_position(a->soup, corner[0]), a->frame.centre, a->frame.scale), area);
 }
 
 /** Sums up the groups asked for; `odd` is scratch per edge. */

@@ -43,15 +43,8 @@ static void measure(looking *l, double scale) {
       }
     }
   }
-  for (size_t f = 0; f < soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(soup, f, &count);
-    if (count == 0)
-      continue;
-    vxm_vec3 area = vxm_polygon_area(soup->positions, corner, count, scale);
-    l->volume[l->label[f]] +=
-        vxm_polygon_cone(vxm_vec3_between(vxm_position(soup, corner[0]), l->box[l->label[f]], scale), area);
-  }
+  for (size_t f = 0; f < soup->face_count; f++)
+    l->volume[l->label[f]] += vxm_face_cone(NULL, soup, f, l->box[l->label[f]], scale);
 }
 
 static void find_kinds(looking *l) {
