@@ -162,6 +162,8 @@ vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint6
                                   vxm_error *error);
 /** Faces from `first` on did not come in, though they come from some that did. */
 void vxm_repair_state_mark_added(vxm_repair_state *state, size_t first);
+/** Makes room for the marks of `to` vertices, of which those from `from` on are new. */
+bool vxm_repair_state_grow_marks(vxm_repair_state *state, size_t from, size_t to, vxm_error *error);
 /** Makes the marks of vertices anew, after the soup was exchanged. */
 vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error);
 /** What a position becomes where positions are to be held by 32-bit floats, else itself. */
