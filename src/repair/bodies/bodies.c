@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/bodies.h"
 
+#include "mesh/sort.h"
 #include "repair/bodies/body_faces.h"
 #include "repair/bodies/hanging_sheets.h"
 #include "repair/bodies/layers.h"
@@ -118,9 +119,7 @@ typedef struct side {
 
 static int by_edge_then_body(const void *a, const void *b) {
   const side *s = a, *t = b;
-  if (s->edge != t->edge)
-    return s->edge < t->edge ? -1 : 1;
-  return s->body < t->body ? -1 : s->body > t->body;
+  return vxm_compare_pairs(s->edge, s->body, t->edge, t->body);
 }
 
 /** A layer that is not closed for itself is none: faces cut through each other elsewhere than at their edges.

@@ -2,6 +2,7 @@
 #include "repair/bodies/whole_patches.h"
 
 #include "mesh/geometry.h"
+#include "mesh/sort.h"
 #include "mesh/unit_scale.h"
 
 #include <stdlib.h>
@@ -14,9 +15,7 @@ typedef struct side {
 
 static int by_edge_then_patch(const void *a, const void *b) {
   const side *s = a, *t = b;
-  if (s->edge != t->edge)
-    return s->edge < t->edge ? -1 : 1;
-  return s->patch < t->patch ? -1 : s->patch > t->patch;
+  return vxm_compare_pairs(s->edge, s->patch, t->edge, t->patch);
 }
 
 /** Lists those of groups in doubt; without a list only counts them. */

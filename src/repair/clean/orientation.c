@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
+#include "mesh/sort.h"
 #include "repair/clean/spanning_turns.h"
 #include "repair/state/repair_state.h"
 
@@ -236,9 +237,7 @@ typedef struct crossing {
 
 static int by_edge_then_patch(const void *a, const void *b) {
   const crossing *p = a, *q = b;
-  if (p->edge != q->edge)
-    return p->edge < q->edge ? -1 : 1;
-  return p->patch < q->patch ? -1 : p->patch > q->patch;
+  return vxm_compare_pairs(p->edge, p->patch, q->edge, q->patch);
 }
 
 /** Lists (or, with NULL, counts) the sides at crossings, as the faces are turned by now. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/geometry.h"
+#include "mesh/sort.h"
 #include "repair/state/merge_rule.h"
 #include "repair/state/repair_state.h"
 
@@ -62,9 +63,7 @@ static int by_length(const void *a, const void *b) {
   const short_edge *p = a, *q = b;
   if (p->length != q->length)
     return p->length < q->length ? -1 : 1;
-  if (p->from != q->from)
-    return p->from < q->from ? -1 : 1;
-  return (p->to > q->to) - (p->to < q->to);
+  return vxm_compare_pairs(p->from, p->to, q->from, q->to);
 }
 
 /** Whether the ends are one vertex to programs that hold 32-bit floats. */
