@@ -73,9 +73,7 @@ static int lower_position_first(const void *a, const void *b) {
 
 static int earlier_ends_first(const void *a, const void *b) {
   const odd_edge *p = a, *q = b;
-  if (p->first != q->first)
-    return p->first < q->first ? -1 : 1;
-  return p->other < q->other ? -1 : p->other > q->other;
+  return vxm_compare_pairs(p->first, p->other, q->first, q->other);
 }
 
 /** Lists the vertices of odd edges once each, and marks them in `rank`; returns how many there are. */
@@ -273,9 +271,7 @@ static int better_first(const void *a, const void *b) {
     return p->rest < q->rest ? -1 : 1;
   if (p->against != q->against)
     return p->against ? 1 : -1;
-  if (p->p != q->p)
-    return p->p < q->p ? -1 : 1;
-  return p->q < q->q ? -1 : p->q > q->q;
+  return vxm_compare_pairs(p->p, p->q, q->p, q->q);
 }
 
 static int lower_key_first(const void *a, const void *b) {

@@ -206,7 +206,7 @@ static vxm_status count_duplicates(taking *t, vxm_error *error) {
   vxm_duplicates found = {0};
   vxm_status status = VXM_OK;
   if (!has_patches(t) || t->patches.may_repeat)
-    status = vxm_duplicates_find(&found, t->context, &t->welded, NULL, NULL, NULL, error);
+    status = vxm_duplicates_find(&found, t->context, &t->welded, NULL, NULL, error);
   t->census->duplicate_faces = (int64_t)found.same;
   t->census->opposite_duplicate_faces = (int64_t)found.opposite_pairs;
   return status;

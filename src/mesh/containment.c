@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
 
+#include "base/box.h"
 #include "mesh/box_tree.h"
 #include "mesh/geometry.h"
 #include "mesh/nonfinite.h"
@@ -67,21 +68,6 @@ static bool is_solid(const builder *b, size_t component) {
 
 /* ---- Boxes, faces and volumes ---- */
 
-/** None of them NaN. */
-static inline void include(double box[6], const double low[3], const double high[3]) {
-  for (int a = 0; a < 3; a++) {
-    box[a] = low[a] < box[a] ? low[a] : box[a];
-    box[a + 3] = high[a] > box[a + 3] ? high[a] : box[a + 3];
-  }
-}
-
-static void empty_box(double box[6]) {
-  for (int a = 0; a < 3; a++) {
-    box[a] = INFINITY;
-    box[a + 3] = -INFINITY;
-  }
-}
-
 /** Faces of one component mostly follow one another: the end of those that begin with `face`, or of as many
  * of them as are worked on without asking whether to go on. */
 static size_t end_of_run(const builder *b, size_t face) {
@@ -94,7 +80,7 @@ static size_t end_of_run(const builder *b, size_t face) {
 /** Boxes in model units, and how many faces each component has. */
 static bool measure_bodies(builder *b) {
   for (size_t i = 0; i < b->count; i++) {
-    empty_box(b->bodies[i].box);
+    vxm_box_empty(b->bodies[i].box, b->bodies[i].box + 3);
     b->bodies[i].component = (uint32_t)i;
   }
   for (size_t f = 0, end; f < b->soup->face_count; f = end) {
@@ -106,15 +92,15 @@ static bool measure_bodies(builder *b) {
     for (uint64_t c = b->soup->offsets[f]; c < b->soup->offsets[end]; c++) {
       const double *p = vxm_position(b->soup, b->soup->indices[c]);
       if (vxm_is_finite(p))
-        include(box, p, p);
+        vxm_box_include(box, box + 3, p);
     }
     memcpy(b->bodies[b->labels[f]].box, box, sizeof box);
     b->bodies[b->labels[f] + 1].first += end - f;
   }
-  empty_box(b->bounds);
+  vxm_box_empty(b->bounds, b->bounds + 3);
   for (size_t i = 0; i < b->count; i++) {
     b->bodies[i + 1].first += b->bodies[i].first;
-    include(b->bounds, b->bodies[i].box, b->bodies[i].box + 3);
+    vxm_box_join(b->bounds, b->bounds + 3, b->bodies[i].box, b->bodies[i].box + 3);
   }
   return true;
 }

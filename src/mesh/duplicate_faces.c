@@ -11,18 +11,16 @@
 
 /* ---- The least form of a face ---- */
 
-/** A face read from one of its corners in one of its directions, after mapping. */
+/** A face read from one of its corners in one of its directions. */
 typedef struct reading {
   const uint32_t *corners;
-  const uint32_t *map;
   size_t count, start;
   bool backward;
 } reading;
 
 static inline uint32_t read_corner(const reading *r, size_t i) {
   size_t at = r->backward ? r->start + r->count - i : r->start + i;
-  uint32_t v = r->corners[at >= r->count ? at - r->count : at];
-  return r->map ? r->map[v] : v;
+  return r->corners[at >= r->count ? at - r->count : at];
 }
 
 static int compare(const reading *a, const reading *b) {
@@ -61,8 +59,8 @@ static void turn_to_least(reading *r) {
 }
 
 /** The least of all readings in both directions: the same for all faces that repeat each other. */
-static reading least_reading(const uint32_t *corners, size_t count, const uint32_t *map) {
-  reading forward = {.corners = corners, .map = map, .count = count};
+static reading least_reading(const uint32_t *corners, size_t count) {
+  reading forward = {.corners = corners, .count = count};
   if (count == 3) {
     uint32_t a = read_corner(&forward, 0), b = read_corner(&forward, 1), c = read_corner(&forward, 2);
     forward.start = a < b ? (a < c ? 0 : 2) : (b < c ? 1 : 2);
@@ -97,7 +95,6 @@ typedef struct tally {
 
 typedef struct search {
   const vxm_soup *soup;
-  const uint32_t *map;
   uint8_t *kinds;
   vxm_copies *copies;
   unsigned bucket_shift;
@@ -112,15 +109,13 @@ typedef struct search {
 static reading least_of_face(const search *s, uint64_t record) {
   size_t count;
   const uint32_t *corners = vxm_face(s->soup, record_face(record), &count);
-  return least_reading(corners, count, s->map);
+  return least_reading(corners, count);
 }
 
 /** Triangles are told apart by their sorted corners: (a b c), (b c a) and (c a b) run forward if a < b < c.
  */
 static void put_triangle(const search *s, vxm_sink *sink, size_t face, const uint32_t *corners) {
   uint32_t a = corners[0], b = corners[1], c = corners[2];
-  if (s->map)
-    a = s->map[a], b = s->map[b], c = s->map[c];
   if (a == b || b == c || c == a)
     return;
   bool backward = (a < b) + (b < c) + (c < a) == 1;
@@ -139,9 +134,9 @@ static void emit_faces(size_t begin, size_t end, vxm_sink *sink, void *payload) 
       put_triangle(s, sink, f, corners);
       continue;
     }
-    if (!vxm_face_has_three(corners, count, s->map))
+    if (!vxm_face_has_three(corners, count, NULL))
       continue;
-    reading r = least_reading(corners, count, s->map);
+    reading r = least_reading(corners, count);
     uint64_t hash = vxm_hash_word(0, count);
     for (size_t i = 0; i < count; i++)
       hash = vxm_hash_word(hash, read_corner(&r, i));
@@ -212,11 +207,10 @@ static void search_bucket(size_t bucket, int worker, void *payload) {
 }
 
 vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
-                               const uint32_t *vertex_map, uint8_t *kinds, vxm_copies *copies,
-                               vxm_error *error) {
+                               uint8_t *kinds, vxm_copies *copies, vxm_error *error) {
   *out = (vxm_duplicates){0};
   size_t bucket_count = vxm_radix_partition_advise(soup->face_count);
-  search s = {.soup = soup, .map = vertex_map, .kinds = kinds, .copies = copies};
+  search s = {.soup = soup, .kinds = kinds, .copies = copies};
   s.bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
   vxm_status status =
       vxm_radix_partition_fill(&s.buckets, context, soup->face_count, bucket_count, emit_faces, &s, error);

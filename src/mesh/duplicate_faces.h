@@ -25,17 +25,15 @@ typedef struct vxm_duplicates {
 } vxm_duplicates;
 
 /**
- * Finds faces that repeat an earlier one: the same corners (after mapping) in the same cyclic order, from any
+ * Finds faces that repeat an earlier one: the same corners in the same cyclic order, from any
  * start, or in the reverse one. Faces with fewer than three distinct corners take no part.
  *
- * @param vertex_map vertex to take in place of each vertex, or NULL
- * @param kinds      face_count elements that get a vxm_repeat each; may be NULL
- * @param copies     face_count elements; may be NULL, as it is if kinds is
+ * @param kinds  face_count elements that get a vxm_repeat each; may be NULL
+ * @param copies face_count elements; may be NULL, as it is if kinds is
  *
  * Linear time, also in the corners of large polygons.
  */
 vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
-                               const uint32_t *vertex_map, uint8_t *kinds, vxm_copies *copies,
-                               vxm_error *error);
+                               uint8_t *kinds, vxm_copies *copies, vxm_error *error);
 
 #endif

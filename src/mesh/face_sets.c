@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/face_sets.h"
+#include "base/box.h"
 #include "mesh/geometry.h"
 #include "mesh/nonfinite.h"
 #include "mesh/unit_scale.h"
@@ -79,20 +80,13 @@ vxm_status vxm_face_sets_part(vxm_soup *soup, vxm_error *error) {
 
 /** Of the finite corners; low above high if there is none. */
 static void box_of(double box[6], const vxm_soup *soup, const uint32_t *faces, size_t count) {
-  for (int a = 0; a < 3; a++) {
-    box[a] = INFINITY;
-    box[a + 3] = -INFINITY;
-  }
+  vxm_box_empty(box, box + 3);
   for (size_t i = 0; i < count; i++) {
     size_t n;
     const uint32_t *corner = vxm_face(soup, faces ? faces[i] : i, &n);
-    for (size_t c = 0; c < n; c++) {
-      const double *p = vxm_position(soup, corner[c]);
-      for (int a = 0; a < 3 && vxm_is_finite(p); a++) {
-        box[a] = p[a] < box[a] ? p[a] : box[a];
-        box[a + 3] = p[a] > box[a + 3] ? p[a] : box[a + 3];
-      }
-    }
+    for (size_t c = 0; c < n; c++)
+      if (vxm_is_finite(vxm_position(soup, corner[c])))
+        vxm_box_include(box, box + 3, vxm_position(soup, corner[c]));
   }
 }
 

@@ -91,6 +91,21 @@ static inline double vxm_polygon_cone(vxm_vec3 corner, vxm_vec3 area) {
   return vxm_vec3_dot(corner, area) / 3.0;
 }
 
+/**
+ * The cone from a point to a face of a soup, of positions multiplied by `scale`; nothing without a corner.
+ *
+ * @param[out] area vxm_polygon_area; may be NULL
+ */
+static inline double vxm_face_cone(vxm_vec3 *area, const vxm_soup *soup, size_t face, const double from[3],
+                                   double scale) {
+  size_t count;
+  const uint32_t *corner = vxm_face(soup, face, &count);
+  vxm_vec3 own = vxm_polygon_area(soup->positions, corner, count, scale);
+  if (area)
+    *area = own;
+  return count > 0 ? vxm_polygon_cone(vxm_vec3_between(vxm_position(soup, corner[0]), from, scale), own) : 0;
+}
+
 /** A mean of three numbers, which rounding may have put beyond them: never so. A point of a triangle that lay
  * outside the box of its mesh by that would see none of it. */
 static inline double vxm_between_three(double mean, double a, double b, double c) {

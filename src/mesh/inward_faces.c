@@ -4,7 +4,7 @@
 #include "mesh/components.h"
 #include "mesh/containment.h"
 #include "mesh/geometry.h"
-#include "mesh/unit_scale.h"
+#include "mesh/nonfinite.h"
 
 /** Of its area: a closed component has a vector area of nothing but rounding. */
 static const double ROUNDING = 1e-6;
@@ -26,27 +26,19 @@ typedef struct sorting {
   vxm_error error;
 } sorting;
 
-static bool is_finite(const vxm_soup *soup, const uint32_t *corner, size_t count) {
-  for (size_t c = 0; c < count; c++)
-    if (!vxm_is_finite(vxm_position(soup, corner[c])))
-      return false;
-  return true;
-}
-
 static bool measure(sorting *s) {
   for (size_t f = 0; f < s->soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(s->soup, f, &count);
     if (vxm_check_cancelled_at(f, s->soup->context, &s->error) != VXM_OK)
       return false;
-    if (count < 3 || !is_finite(s->soup, corner, count))
+    if (count < 3 || !vxm_face_is_finite(s->soup, corner, count))
       continue;
     component *c = &s->components[s->label[f]];
-    vxm_vec3 area = vxm_polygon_area(s->soup->positions, corner, count, s->frame.scale);
+    vxm_vec3 area;
+    s->volume += vxm_face_cone(&area, s->soup, f, s->frame.centre, s->frame.scale);
     c->area += vxm_vec3_length(area);
     c->vector_area = vxm_vec3_sum(c->vector_area, area);
-    s->volume += vxm_polygon_cone(
-        vxm_vec3_between(vxm_position(s->soup, corner[0]), s->frame.centre, s->frame.scale), area);
   }
   for (size_t i = 0; i < s->count; i++) {
     const component *c = &s->components[i];

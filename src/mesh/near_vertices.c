@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/near_vertices.h"
 
+#include "base/box.h"
 #include "base/threads.h"
 #include "mesh/position_hash.h"
 #include "mesh/radix_partition.h"
@@ -74,17 +75,6 @@ static bool point_near_box(const double *p, const box *b, double tolerance) {
     away[axis] = below > 0 ? below : above > 0 ? above : 0;
   }
   return length_within(away[0], away[1], away[2], tolerance);
-}
-
-static box no_box(void) {
-  return (box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-}
-
-static void box_include(box *b, const double *p) {
-  for (int axis = 0; axis < 3; axis++) {
-    b->low[axis] = p[axis] < b->low[axis] ? p[axis] : b->low[axis];
-    b->high[axis] = p[axis] > b->high[axis] ? p[axis] : b->high[axis];
-  }
 }
 
 /* ---- Union-find without locks: a root is hooked below a lower one, so the last root is the lowest ---- */
@@ -278,14 +268,15 @@ static void meet(const search *s, uint32_t v, uint32_t u) {
 
 /** Links all who live in a crowded cell, and who visits it and comes near the box around them. */
 static void link_crowd(const search *s, const cells *c, uint32_t list) {
-  box around = no_box();
+  box around;
   uint32_t first = VXM_NO_VERTEX;
+  vxm_box_empty(around.low, around.high);
   for (uint32_t i = list; i != 0; i = c->next[i - 1])
     if (lives(c->records[i - 1])) {
       uint32_t v = vertex_of(c->records[i - 1]);
       first = first == VXM_NO_VERTEX ? v : first;
       link_vertices(s, first, v);
-      box_include(&around, s->positions + 3 * (size_t)v);
+      vxm_box_include(around.low, around.high, s->positions + 3 * (size_t)v);
     }
   for (uint32_t i = list; i != 0; i = c->next[i - 1]) {
     uint32_t v = vertex_of(c->records[i - 1]);
@@ -360,10 +351,12 @@ static vxm_status map_groups(search *s, vxm_context *context, uint32_t *map, vxm
     return error->code;
   }
   for (size_t g = 0; g < groups; g++)
-    boxes[g] = no_box();
+    vxm_box_empty(boxes[g].low, boxes[g].high);
   for (size_t v = 0; v < s->count; v++)
-    if (number[map[v]] != VXM_NO_VERTEX)
-      box_include(&boxes[number[map[v]]], s->positions + 3 * v);
+    if (number[map[v]] != VXM_NO_VERTEX) {
+      box *b = &boxes[number[map[v]]];
+      vxm_box_include(b->low, b->high, s->positions + 3 * v);
+    }
   for (size_t v = 0; v < s->count; v++)
     if (map[v] != v && (atomic_load_explicit(&s->blocked[map[v]], memory_order_relaxed) ||
                         !box_within(&boxes[number[map[v]]], s->tolerance)))
@@ -376,10 +369,11 @@ static vxm_status map_groups(search *s, vxm_context *context, uint32_t *map, vxm
 /** Lays zones over the members, where these are few and come near few zones. */
 static vxm_status lay_zones(search *s, size_t members, vxm_context *context, vxm_error *error) {
   enum { FEW_OF = 4, NEAR = 2 };
-  box around = no_box();
+  box around;
+  vxm_box_empty(around.low, around.high);
   for (size_t v = 0; v < s->count; v++)
     if (s->roles[v] == VXM_NEAR_MEMBER)
-      box_include(&around, s->positions + 3 * v);
+      vxm_box_include(around.low, around.high, s->positions + 3 * v);
   bool some = members > 0 && members < s->count / FEW_OF;
   for (int axis = 0; axis < 3; axis++) {
     double length = around.high[axis] - around.low[axis];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/point_in_mesh.h"
 
+#include "base/box.h"
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
 
@@ -250,10 +251,7 @@ static void count_odd(double height, int turn, void *payload) {
 }
 
 void vxm_point_in_mesh_find_box(vxm_point_in_mesh *inside) {
-  for (int a = 0; a < 3; a++) {
-    inside->box[a] = INFINITY;
-    inside->box[a + 3] = -INFINITY;
-  }
+  vxm_box_empty(inside->box, inside->box + 3);
   for (size_t i = 0; i < inside->face_count; i++) {
     size_t count;
     const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Sorting of 64-bit keys: of many in linear time, of few by insertion. */
+/** Sorting of 64-bit keys: of many in linear time, of few by insertion; and comparing pairs of them. */
 #ifndef VXM_MESH_SORT_H
 #define VXM_MESH_SORT_H
 
@@ -21,6 +21,11 @@ static inline void vxm_sort_few_keys(uint64_t *keys, size_t count) {
       keys[j] = keys[j - 1];
     keys[j] = key;
   }
+}
+
+/** Compares two pairs, for qsort: by their first numbers, and where these are equal by their second ones. */
+static inline int vxm_compare_pairs(uint64_t p1, uint64_t p2, uint64_t q1, uint64_t q2) {
+  return p1 != q1 ? (p1 < q1 ? -1 : 1) : (p2 > q2) - (p2 < q2);
 }
 
 #endif

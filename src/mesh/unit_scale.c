@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/unit_scale.h"
 
+#include "base/box.h"
 #include "base/threads.h"
 #include "mesh/geometry.h"
 
@@ -31,36 +32,20 @@ static void mark_slice(size_t slice, int worker, void *payload) {
     atomic_store_explicit(&s->used[s->soup->indices[c]], 1, memory_order_relaxed);
 }
 
-static void start_bounds(double bounds[6]) {
-  for (int axis = 0; axis < 3; axis++) {
-    bounds[axis] = INFINITY;
-    bounds[3 + axis] = -INFINITY;
-  }
-}
-
-static void include_point(double bounds[6], const double *low, const double *high) {
-  for (int axis = 0; axis < 3; axis++) {
-    if (low[axis] < bounds[axis])
-      bounds[axis] = low[axis];
-    if (high[axis] > bounds[3 + axis])
-      bounds[3 + axis] = high[axis];
-  }
-}
-
 static void measure_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   survey *s = payload;
   size_t begin = vxm_slice_begin(s->soup->vertex_count, s->vertex_slices, slice);
   size_t end = vxm_slice_begin(s->soup->vertex_count, s->vertex_slices, slice + 1);
   vxm_extent found = {0};
-  start_bounds(found.bounds);
+  vxm_box_empty(found.bounds, found.bounds + 3);
   for (size_t v = begin; v < end; v++) {
     const double *p = vxm_position(s->soup, v);
     bool used = atomic_load_explicit(&s->used[v], memory_order_relaxed), finite = vxm_is_finite(p);
     found.unused += !used;
     found.nonfinite += !finite;
     if (used && finite)
-      include_point(found.bounds, p, p);
+      vxm_box_include(found.bounds, found.bounds + 3, p);
   }
   s->found[slice] = found;
 }
@@ -75,11 +60,11 @@ void vxm_extent_of(vxm_extent *out, vxm_context *context, const vxm_soup *soup, 
     memset(used, 0, soup->vertex_count);
   vxm_parallel(context, s.face_slices, mark_slice, &s);
   vxm_parallel(context, s.vertex_slices, measure_slice, &s);
-  start_bounds(out->bounds);
+  vxm_box_empty(out->bounds, out->bounds + 3);
   for (size_t i = 0; i < s.vertex_slices; i++) {
     out->nonfinite += s.found[i].nonfinite;
     out->unused += s.found[i].unused;
-    include_point(out->bounds, s.found[i].bounds, s.found[i].bounds + 3);
+    vxm_box_join(out->bounds, out->bounds + 3, s.found[i].bounds, s.found[i].bounds + 3);
   }
   for (int i = 0; i < 6; i++)
     /* no point: the bounds are still infinite; and -0.0 would be printed as such */

@@ -24,14 +24,10 @@ typedef struct vxm_cube_cycles {
 /** Those of all configurations: bit c is set where corner c is. */
 void vxm_cube_cycles_find(vxm_cube_cycles out[VXM_CUBE_CONFIGURATIONS]);
 
-/** The corners at the ends of a link. */
+/** The corner that a link begins at. */
 static inline int vxm_cube_link_begin(int link) {
   int axis = link / 4, b = (axis + 1) % 3, c = (axis + 2) % 3;
   return (link & 1) << b | (link >> 1 & 1) << c;
-}
-
-static inline int vxm_cube_link_end(int link) {
-  return vxm_cube_link_begin(link) | 1 << link / 4;
 }
 
 #endif

@@ -100,8 +100,8 @@ static bool find_degenerate(finding *f) {
 static bool find_duplicates(finding *f) {
   vxm_duplicates found;
   uint8_t *marks = vxm_calloc(f->state.context, f->soup->face_count, 1, &f->error);
-  bool done = marks && vxm_duplicates_find(&found, f->state.context, f->state.soup, NULL, marks, NULL,
-                                           &f->error) == VXM_OK;
+  bool done =
+      marks && vxm_duplicates_find(&found, f->state.context, f->state.soup, marks, NULL, &f->error) == VXM_OK;
   for (size_t i = 0; done && i < f->soup->face_count; i++)
     if (marks[i])
       done = enter_face(f, VXM_DEFECT_DUPLICATE_FACE, i);

@@ -31,35 +31,40 @@ static int64_t count_round(const vxm_repair_state *state) {
  * looked for last: doubled faces hide them, and faces without area may bridge them. T-junctions come before
  * doubled faces, of which it is asked whether they are closed.
  */
-static vxm_status run_until_quiet(vxm_repair_state *state, vxm_error *error) {
+static vxm_status run_until_quiet(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  int64_t before = count_round(state);
   /* a given tolerance applies to the mesh as it is */
   int next = state->options.weld == VXM_WELD_TOLERANCE ? PASSES - 1 : 0, quiet = 0;
   double fraction = 0.3;
   while (quiet < PASSES) {
-    bool changed;
-    vxm_status status = run_pass(state, round_passes[next], fraction, &changed, error);
+    vxm_status status = run_pass(state, round_passes[next], fraction, changed, error);
     if (status != VXM_OK)
       return status;
     /* welding may leave work to itself: a vertex that is no longer in the way lets others merge */
     bool settled = round_passes[next] != vxm_pass_tolerant_weld;
-    quiet = changed ? settled : quiet + 1;
+    quiet = *changed ? settled : quiet + 1;
     next = (next + 1) % PASSES;
     fraction += (0.9 - fraction) / 8;
   }
+  *changed = count_round(state) > before;
   return VXM_OK;
+}
+
+/** Runs a pass that moves or merges vertices, so that the account of parts sees how far. */
+static vxm_status run_followed(vxm_repair_state *state, vxm_pass_fn pass, bool *changed, vxm_error *error) {
+  vxm_status status =
+      state->provenance ? vxm_provenance_start(state->provenance, state->soup, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = pass(state, changed, error);
+  if (status == VXM_OK && state->provenance)
+    status = vxm_provenance_settle(state->provenance, state->soup, error);
+  return status;
 }
 
 /** The passes that make work for each other, once more; `changed`: they had some. */
 static vxm_status settle_again(vxm_repair_state *state, bool *changed, vxm_error *error) {
-  int64_t before = count_round(state);
   bool turned;
-  vxm_status status =
-      state->provenance ? vxm_provenance_start(state->provenance, state->soup, error) : VXM_OK;
-  if (status == VXM_OK)
-    status = run_until_quiet(state, error);
-  *changed = status == VXM_OK && count_round(state) > before;
-  if (status == VXM_OK && state->provenance)
-    status = vxm_provenance_settle(state->provenance, state->soup, error);
+  vxm_status status = run_followed(state, run_until_quiet, changed, error);
   return status == VXM_OK && *changed ? vxm_pass_orientation(state, &turned, error) : status;
 }
 
@@ -72,15 +77,15 @@ static vxm_status align_diagonals(vxm_repair_state *state, bool *changed, vxm_er
 /** The passes that make work for each other; then walls in bodies go, if they are to, and faces are turned.
  * That polygons are there twice may show only when some of their triangles are gone or turned. */
 static vxm_status settle(vxm_repair_state *state, vxm_error *error) {
-  bool more, walls = false, turned;
+  bool more, walls = false, changed;
   vxm_status status = align_diagonals(state, &more, error);
   more = true; /* whether there were any or not */
   for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
-    status = run_until_quiet(state, error);
+    status = run_until_quiet(state, &changed, error);
     if (status == VXM_OK)
       status = vxm_pass_inner_walls(state, &walls, error);
     if (status == VXM_OK)
-      status = run_pass(state, vxm_pass_orientation, 0.85, &turned, error);
+      status = run_pass(state, vxm_pass_orientation, 0.85, &changed, error);
     if (status == VXM_OK)
       status = align_diagonals(state, &more, error);
     more = more || walls;
@@ -106,17 +111,6 @@ static vxm_status separate_until_quiet(vxm_repair_state *state, bool *changed, v
   return status;
 }
 
-/** Runs a pass that moves or merges vertices, so that the account of parts sees how far. */
-static vxm_status run_followed(vxm_repair_state *state, vxm_pass_fn pass, bool *changed, vxm_error *error) {
-  vxm_status status =
-      state->provenance ? vxm_provenance_start(state->provenance, state->soup, error) : VXM_OK;
-  if (status == VXM_OK)
-    status = pass(state, changed, error);
-  if (status == VXM_OK && state->provenance)
-    status = vxm_provenance_settle(state->provenance, state->soup, error);
-  return status;
-}
-
 static vxm_status move_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
   return run_followed(state, vxm_pass_perturb_coincident, changed, error);
 }
@@ -138,7 +132,8 @@ static vxm_status unite(vxm_repair_state *state, bool *changed, vxm_error *error
 /** What could not be united is wrapped, if that was asked for, and then united after all. */
 static vxm_status wrap_the_rest(vxm_repair_state *state, bool *changed, vxm_error *error) {
   bool more;
-  vxm_status status = vxm_pass_fallback(state, changed, error);
+  *changed = false;
+  vxm_status status = state->union_failures > 0 ? vxm_pass_fallback(state, changed, error) : VXM_OK;
   return status == VXM_OK && *changed ? unite(state, &more, error) : status;
 }
 
@@ -192,34 +187,32 @@ static vxm_status run_rounds(vxm_repair_state *state, vxm_error *error) {
   return status;
 }
 
-/** Goes back before the union, and lets vertices merge that a lattice of so many bits has in one place. */
-static vxm_status begin_again(vxm_repair_state *state, const vxm_before_union *before, int bits,
-                              vxm_error *error) {
+/** Goes back before the union, for another try; on a lattice vertices may merge that it has in one place. */
+static vxm_status begin_again(vxm_repair_state *state, const vxm_before_union *before,
+                              const vxm_union_try *union_try, vxm_error *error) {
   bool more;
   vxm_status status = vxm_before_union_again(state, before, error);
-  if (bits == 0)
+  state->union_try = *union_try;
+  if (status != VXM_OK || union_try->bits == 0)
     return status;
-  if (status == VXM_OK && state->provenance)
-    status = vxm_provenance_start(state->provenance, state->soup, error);
-  if (status != VXM_OK)
-    return status;
-  vxm_snap_to_lattice(state, bits);
-  if (state->provenance)
-    status = vxm_provenance_settle(state->provenance, state->soup, error);
+  status = run_followed(state, vxm_snap_to_lattice, &more, error);
   if (status == VXM_OK)
     status = vxm_pass_exact_weld(state, &more, error);
   return status == VXM_OK ? settle_again(state, &more, error) : status;
 }
 
+/** Runs a level that unites parts; from the second try on, from before the union. */
+static vxm_status run_try(vxm_repair_state *state, const vxm_before_union *before,
+                          const vxm_union_try *union_try, int number, vxm_error *error) {
+  vxm_status status = number > 1 ? begin_again(state, before, union_try, error) : VXM_OK;
+  state->union_tries = number;
+  return status == VXM_OK ? run_rounds(state, error) : status;
+}
+
 /** Wraps what still cuts through something, if that was asked for. */
 static vxm_status wrap_crossing(vxm_repair_state *state, vxm_error *error) {
-  bool changed = false;
-  if (!(state->options.fallback_alpha > 0))
-    return VXM_OK;
-  int64_t ununited = state->union_failures;
-  state->union_failures = 1; /* as good as that */
+  bool changed;
   vxm_status status = vxm_pass_fallback(state, &changed, error);
-  state->union_failures = changed ? 0 : ununited;
   return status == VXM_OK && changed ? run_rounds(state, error) : status;
 }
 
@@ -228,44 +221,28 @@ static vxm_status wrap_crossing(vxm_repair_state *state, vxm_error *error) {
  * the other way; at last what is wound so is left out, of which the check for losses tells.
  */
 static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
-  static const struct {
-    int bits; /**< of the lattice; 0 = none */
-    bool collapses, doubles_only, outward_only;
-  } tries[] = {{.bits = 0},
-               {.bits = 0, .collapses = true},
-               {.bits = 24},
-               {.bits = 24, .collapses = true},
-               {.bits = 21, .collapses = true},
-               {.bits = 18, .collapses = true},
-               {.bits = 0, .collapses = true, .doubles_only = true},
-               {.bits = 24, .collapses = true, .doubles_only = true},
-               {.bits = 0, .outward_only = true},
-               {.bits = 0, .collapses = true, .outward_only = true}};
+  static const vxm_union_try tries[] = {{.bits = 0},
+                                        {.bits = 0, .collapses = true},
+                                        {.bits = 24},
+                                        {.bits = 24, .collapses = true},
+                                        {.bits = 21, .collapses = true},
+                                        {.bits = 18, .collapses = true},
+                                        {.bits = 0, .collapses = true, .doubles_only = true},
+                                        {.bits = 24, .collapses = true, .doubles_only = true},
+                                        {.bits = 0, .outward_only = true},
+                                        {.bits = 0, .collapses = true, .outward_only = true}};
   enum { TRIES = sizeof tries / sizeof *tries };
   vxm_before_union before = {.soup = NULL};
   bool short_of = true;
   vxm_status status = vxm_before_union_keep(&before, state, error);
   for (int i = 0; i < TRIES && short_of && status == VXM_OK; i++) {
-    if (i > 0)
-      status = begin_again(state, &before, tries[i].bits, error);
-    state->collapses = tries[i].collapses;
-    state->doubles_only = tries[i].doubles_only;
-    state->outward_only = tries[i].outward_only;
-    state->union_tries = i + 1;
-    if (status == VXM_OK)
-      status = run_rounds(state, error);
+    status = run_try(state, &before, &tries[i], i + 1, error);
     if (status == VXM_OK)
       status = vxm_union_fell_short(&short_of, state, error);
     short_of = short_of || (i > 0 && state->union_failures > 0);
   }
   if (status == VXM_OK && short_of) { /* then rather what moves nothing */
-    status = begin_again(state, &before, tries[0].bits, error);
-    state->collapses = tries[0].collapses;
-    state->doubles_only = tries[0].doubles_only;
-    state->outward_only = tries[0].outward_only;
-    state->union_tries = TRIES + 1;
-    if (status == VXM_OK)
-      status = run_rounds(state, error);
+    status = run_try(state, &before, &tries[0], TRIES + 1, error);
     if (status == VXM_OK)
       status = wrap_crossing(state, error);
   }

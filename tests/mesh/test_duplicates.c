@@ -3,28 +3,24 @@
 
 #include "mesh/duplicate_faces.h"
 
-static uint32_t corner(const uint32_t *face, const uint32_t *map, size_t i) {
-  return map ? map[face[i]] : face[i];
-}
-
-static size_t distinct_corners(const uint32_t *face, size_t count, const uint32_t *map) {
+static size_t distinct_corners(const uint32_t *face, size_t count) {
   size_t distinct = 0;
   for (size_t i = 0; i < count; i++) {
     bool seen = false;
     for (size_t j = 0; j < i; j++)
-      seen |= corner(face, map, i) == corner(face, map, j);
+      seen |= face[i] == face[j];
     distinct += !seen;
   }
   return distinct;
 }
 
 /** Whether one face is the other turned, and read backward if so asked; by trying every turn. */
-static bool repeats(const uint32_t *a, const uint32_t *b, size_t count, const uint32_t *map, bool backward) {
+static bool repeats(const uint32_t *a, const uint32_t *b, size_t count, bool backward) {
   for (size_t turn = 0; turn < count; turn++) {
     bool equal = true;
     for (size_t i = 0; i < count && equal; i++) {
       size_t j = backward ? (turn + count - i) % count : (turn + i) % count;
-      equal = corner(a, map, i) == corner(b, map, j);
+      equal = a[i] == b[j];
     }
     if (equal)
       return true;
@@ -32,33 +28,33 @@ static bool repeats(const uint32_t *a, const uint32_t *b, size_t count, const ui
   return false;
 }
 
-static vxm_repeat kind_by_search(const vxm_soup *soup, const uint32_t *map, size_t f) {
+static vxm_repeat kind_by_search(const vxm_soup *soup, size_t f) {
   size_t count, other;
   const uint32_t *face = vxm_face(soup, f, &count);
   bool opposite = false;
-  if (distinct_corners(face, count, map) < 3)
+  if (distinct_corners(face, count) < 3)
     return VXM_REPEAT_NONE;
   for (size_t g = 0; g < f; g++) {
     const uint32_t *earlier = vxm_face(soup, g, &other);
     if (other != count)
       continue;
-    if (repeats(face, earlier, count, map, false))
+    if (repeats(face, earlier, count, false))
       return VXM_REPEAT_SAME;
-    opposite |= repeats(face, earlier, count, map, true);
+    opposite |= repeats(face, earlier, count, true);
   }
   return opposite ? VXM_REPEAT_OPPOSITE : VXM_REPEAT_NONE;
 }
 
-static vxm_copies copies_by_search(const vxm_soup *soup, const uint32_t *map, size_t f) {
+static vxm_copies copies_by_search(const vxm_soup *soup, size_t f) {
   size_t count, other;
   const uint32_t *face = vxm_face(soup, f, &count);
   vxm_copies copies = {.first = SIZE_MAX};
-  if (distinct_corners(face, count, map) < 3)
+  if (distinct_corners(face, count) < 3)
     return (vxm_copies){.first = f, .same = 1};
   for (size_t g = 0; g < soup->face_count; g++) {
     const uint32_t *second = vxm_face(soup, g, &other);
-    bool same = other == count && repeats(face, second, count, map, false);
-    bool opposite = !same && other == count && repeats(face, second, count, map, true);
+    bool same = other == count && repeats(face, second, count, false);
+    bool opposite = !same && other == count && repeats(face, second, count, true);
     if ((same || opposite) && copies.first == SIZE_MAX) {
       copies.first = g;
       copies.turned = opposite;
@@ -71,18 +67,18 @@ static vxm_copies copies_by_search(const vxm_soup *soup, const uint32_t *map, si
 }
 
 /** Faces later than f that make pairs with it: used to count pairs of opposite faces greedily. */
-static size_t pairs_by_search(const vxm_soup *soup, const uint32_t *map) {
+static size_t pairs_by_search(const vxm_soup *soup) {
   bool taken[256] = {false};
   size_t pairs = 0;
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t count, other;
     const uint32_t *face = vxm_face(soup, f, &count);
-    if (taken[f] || distinct_corners(face, count, map) < 3)
+    if (taken[f] || distinct_corners(face, count) < 3)
       continue;
     for (size_t g = f + 1; g < soup->face_count; g++) {
       const uint32_t *later = vxm_face(soup, g, &other);
-      if (taken[g] || other != count || repeats(face, later, count, map, false) ||
-          !repeats(face, later, count, map, true))
+      if (taken[g] || other != count || repeats(face, later, count, false) ||
+          !repeats(face, later, count, true))
         continue;
       taken[g] = true;
       pairs++;
@@ -100,19 +96,15 @@ static void equals_search(void **state) {
   for (int round = 0; round < 600; round++) {
     size_t vertices = 1 + (size_t)vxm_rng_below(&rng, 7);
     vxm_soup *soup = random_soup(context, &rng, vertices, (size_t)vxm_rng_below(&rng, 60), 3, 8);
-    uint32_t map_array[8];
-    for (uint32_t v = 0; v < vertices; v++)
-      map_array[v] = v > 0 && vxm_rng_below(&rng, 4) == 0 ? map_array[vxm_rng_below(&rng, v)] : v;
-    const uint32_t *map = round % 2 ? map_array : NULL;
     uint8_t kinds[64];
     vxm_copies copies[64];
     vxm_duplicates found, counted;
-    assert_int_equal(vxm_duplicates_find(&found, context, soup, map, kinds, copies, NULL), VXM_OK);
-    assert_int_equal(vxm_duplicates_find(&counted, context, soup, map, NULL, NULL, NULL), VXM_OK);
+    assert_int_equal(vxm_duplicates_find(&found, context, soup, kinds, copies, NULL), VXM_OK);
+    assert_int_equal(vxm_duplicates_find(&counted, context, soup, NULL, NULL, NULL), VXM_OK);
     size_t same = 0;
     for (size_t f = 0; f < soup->face_count; f++) {
-      assert_int_equal(kinds[f], kind_by_search(soup, map, f));
-      vxm_copies wanted = copies_by_search(soup, map, f);
+      assert_int_equal(kinds[f], kind_by_search(soup, f));
+      vxm_copies wanted = copies_by_search(soup, f);
       assert_int_equal(copies[f].first, wanted.first);
       assert_int_equal(copies[f].rank, wanted.rank);
       assert_int_equal(copies[f].same, wanted.same);
@@ -122,7 +114,7 @@ static void equals_search(void **state) {
       seen[kinds[f]]++;
     }
     assert_int_equal(found.same, same);
-    assert_int_equal(found.opposite_pairs, pairs_by_search(soup, map));
+    assert_int_equal(found.opposite_pairs, pairs_by_search(soup));
     assert_memory_equal(&found, &counted, sizeof found);
     vxm_soup_destroy(soup);
   }
@@ -141,7 +133,7 @@ static void crowds_and_large_faces(void **state) {
   for (int f = 0; f < COPIES; f++)
     f % 3 ? add_triangle(soup, 1, 2, 3) : add_triangle(soup, 2, 1, 3);
   vxm_duplicates found;
-  assert_int_equal(vxm_duplicates_find(&found, context, soup, NULL, NULL, NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_duplicates_find(&found, context, soup, NULL, NULL, NULL), VXM_OK);
   assert_int_equal(found.same, COPIES - 2);
   assert_int_equal(found.opposite_pairs, COPIES / 3);
   vxm_soup_destroy(soup);
@@ -168,7 +160,7 @@ static void crowds_and_large_faces(void **state) {
   }
   free(corners);
   uint8_t kinds[3];
-  assert_int_equal(vxm_duplicates_find(&found, context, soup, NULL, kinds, NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_duplicates_find(&found, context, soup, kinds, NULL, NULL), VXM_OK);
   assert_int_equal(kinds[0], VXM_REPEAT_NONE);
   assert_int_equal(kinds[1], VXM_REPEAT_SAME);
   assert_int_equal(kinds[2], VXM_REPEAT_OPPOSITE);

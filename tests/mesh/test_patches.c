@@ -78,7 +78,7 @@ static void check(const vxm_soup *soup, int *seen) {
   assert_int_equal(patches.is_closed, edges.odd == 0);
 
   vxm_duplicates found;
-  assert_int_equal(vxm_duplicates_find(&found, soup->context, soup, NULL, NULL, NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_duplicates_find(&found, soup->context, soup, NULL, NULL, NULL), VXM_OK);
   assert_true(patches.may_repeat || found.same + found.opposite_pairs == 0);
   size_t components;
   uint32_t labels[256];

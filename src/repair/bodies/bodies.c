@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/bodies.h"
 
+#include "mesh/sort.h"
 #include "repair/bodies/body_faces.h"
 #include "repair/bodies/hanging_sheets.h"
 #include "repair/bodies/layers.h"
@@ -118,9 +119,7 @@ typedef struct side {
 
 static int by_edge_then_body(const void *a, const void *b) {
   const side *s = a, *t = b;
-  if (s->edge != t->edge)
-    return s->edge < t->edge ? -1 : 1;
-  return s->body < t->body ? -1 : s->body > t->body;
+  return vxm_compare_pairs(s->edge, s->body, t->edge, t->body);
 }
 
 /** A layer that is not closed for itself is none: faces cut through each other elsewhere than at their edges.
@@ -185,8 +184,8 @@ static bool find_layers(parting *p) {
   l->known = l->front ? scratch(p, faces, sizeof *l->known) : NULL;
   l->cut = l->known ? scratch(p, faces, sizeof *l->cut) : NULL;
   p->failed = l->cut ? scratch(p, p->groups.count, sizeof *p->failed) : NULL;
-  bool done = p->failed && vxm_duplicates_find(&found, p->state->context, p->soup, NULL, kinds, p->copies,
-                                               &p->error) == VXM_OK;
+  bool done = p->failed &&
+              vxm_duplicates_find(&found, p->state->context, p->soup, kinds, p->copies, &p->error) == VXM_OK;
   l->state = p->state;
   l->copies = p->copies;
   l->groups = &p->groups;

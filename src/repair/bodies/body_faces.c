@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/body_faces.h"
 
+#include "mesh/sort.h"
+
 #include <stdlib.h>
 
 /** A vertex of a body that is not its keeper. */
@@ -21,9 +23,7 @@ typedef struct building {
 
 static int by_vertex_then_body(const void *a, const void *b) {
   const claim *s = a, *t = b;
-  if (s->vertex != t->vertex)
-    return s->vertex < t->vertex ? -1 : 1;
-  return s->body < t->body ? -1 : s->body > t->body;
+  return vxm_compare_pairs(s->vertex, s->body, t->vertex, t->body);
 }
 
 /** The body that has the vertex of a face. */

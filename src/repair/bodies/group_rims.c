@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/group_rims.h"
 
+#include "mesh/sort.h"
+
 #include <stdlib.h>
 
 static int by_vertex_then_group(const void *a, const void *b) {
   const vxm_rim_vertex *s = a, *t = b;
-  if (s->vertex != t->vertex)
-    return s->vertex < t->vertex ? -1 : 1;
-  return s->group < t->group ? -1 : s->group > t->group;
+  return vxm_compare_pairs(s->vertex, s->group, t->vertex, t->group);
 }
 
 static bool is_rim(const vxm_edge_groups *groups, const vxm_edge *edges, uint64_t corner) {

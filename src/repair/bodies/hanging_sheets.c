@@ -241,18 +241,6 @@ static bool choose(cutting *c, bool *any) {
 
 /* ---- Cutting ---- */
 
-static bool grow_marks(cutting *c, size_t from) {
-  uint8_t **marks[2] = {&c->state->gone, &c->state->used};
-  for (int i = 0; i < 2; i++) {
-    uint8_t *grown = vxm_realloc(c->state->context, *marks[i], c->soup->vertex_count, 1, &c->error);
-    if (!grown)
-      return false;
-    memset(grown + from, 0, c->soup->vertex_count - from);
-    *marks[i] = grown;
-  }
-  return true;
-}
-
 /** Gives the sheets that are cut off their own vertices in the place of those that others have, too. Sheets
  * that share some go on doing so. @param number scratch per vertex */
 static bool cut(cutting *c, size_t *number) {
@@ -275,7 +263,8 @@ static bool cut(cutting *c, size_t *number) {
       if (number[vertex] > 0)
         soup->indices[s] = (uint32_t)(number[vertex] - 1);
     }
-  return c->error.code == VXM_OK && grow_marks(c, from);
+  return c->error.code == VXM_OK &&
+         vxm_repair_state_grow_marks(c->state, from, soup->vertex_count, &c->error);
 }
 
 static bool cut_sheets(cutting *c) {

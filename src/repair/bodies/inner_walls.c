@@ -114,13 +114,10 @@ static vxm_status find_spaces(walling *w, vxm_error *error) {
 /** Measures the spaces, and counts those that lie around their group. */
 static void find_outers(walling *w) {
   for (size_t f = 0; f < w->soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(w->soup, f, &count);
-    if (!finding_of(w, f)->asked || count == 0)
+    vxm_vec3 area;
+    if (!finding_of(w, f)->asked)
       continue;
-    vxm_vec3 area = vxm_polygon_area(w->soup->positions, corner, count, w->frame.scale);
-    double cone = vxm_polygon_cone(
-        vxm_vec3_between(vxm_position(w->soup, corner[0]), w->frame.centre, w->frame.scale), area);
+    double cone = vxm_face_cone(&area, w->soup, f, w->frame.centre, w->frame.scale);
     finding_of(w, f)->area += vxm_vec3_length(area);
     w->volume[vxm_set_of(w->space, 2 * f)] += cone;
     w->volume[vxm_set_of(w->space, 2 * f + 1)] -= cone;

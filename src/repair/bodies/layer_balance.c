@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/sort.h"
 #include "repair/bodies/layer_stacks.h"
 
 #include <stdlib.h>
@@ -42,16 +43,12 @@ typedef struct balancing {
 
 static int by_patch_then_edge(const void *a, const void *b) {
   const border *s = a, *t = b;
-  if (s->patch != t->patch)
-    return s->patch < t->patch ? -1 : 1;
-  return s->edge < t->edge ? -1 : s->edge > t->edge;
+  return vxm_compare_pairs(s->patch, s->edge, t->patch, t->edge);
 }
 
 static int by_edge_then_patch(const void *a, const void *b) {
   const border *s = a, *t = b;
-  if (s->edge != t->edge)
-    return s->edge < t->edge ? -1 : 1;
-  return s->patch < t->patch ? -1 : s->patch > t->patch;
+  return vxm_compare_pairs(s->edge, s->patch, t->edge, t->patch);
 }
 
 /** Lists the sides where patches of groups that are asked for end; without a list only counts them. */

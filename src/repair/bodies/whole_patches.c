@@ -2,6 +2,7 @@
 #include "repair/bodies/whole_patches.h"
 
 #include "mesh/geometry.h"
+#include "mesh/sort.h"
 #include "mesh/unit_scale.h"
 
 #include <stdlib.h>
@@ -14,9 +15,7 @@ typedef struct side {
 
 static int by_edge_then_patch(const void *a, const void *b) {
   const side *s = a, *t = b;
-  if (s->edge != t->edge)
-    return s->edge < t->edge ? -1 : 1;
-  return s->patch < t->patch ? -1 : s->patch > t->patch;
+  return vxm_compare_pairs(s->edge, s->patch, t->edge, t->patch);
 }
 
 /** Lists those of groups in doubt; without a list only counts them. */
@@ -66,14 +65,9 @@ static void add_volumes(const vxm_layers *l, double *volume) {
   vxm_extent extent;
   vxm_repair_state_extent(l->state, &extent);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
-  for (size_t f = 0; f < soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(soup, f, &count);
-    if (l->asked[l->groups->of_face[f]] && count > 0)
-      volume[vxm_set_of(l->patch, f)] +=
-          vxm_polygon_cone(vxm_vec3_between(vxm_position(soup, corner[0]), frame.centre, frame.scale),
-                           vxm_polygon_area(soup->positions, corner, count, frame.scale));
-  }
+  for (size_t f = 0; f < soup->face_count; f++)
+    if (l->asked[l->groups->of_face[f]])
+      volume[vxm_set_of(l->patch, f)] += vxm_face_cone(NULL, soup, f, frame.centre, frame.scale);
 }
 
 /** Groups that have failed, have a patch that is cut through, or patches of which some are wound inward and

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/box.h"
 #include "mesh/geometry.h"
 #include "repair/state/repair_state.h"
-
-#include <math.h>
 
 /* A face without area may be all that joins two others whose shared side has a vertex more on one of them: a
    sliver between A-B on one side and A-C, C-B on the other. Without it the mesh would be open there. So such
@@ -132,15 +131,12 @@ static vxm_status choose(removal *r, vxm_error *error) {
 /** Whether a face that goes has a shape: it is only small, beside all that there is. */
 static bool has_shape(const vxm_soup *soup, size_t face) {
   const double sliver = 1e-4; /* of the squared diagonal: flatter than that it would go in any company */
-  double bounds[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+  double bounds[6];
   size_t count;
   const uint32_t *corner = vxm_face(soup, face, &count);
+  vxm_box_empty(bounds, bounds + 3);
   for (size_t i = 0; i < count; i++)
-    for (int a = 0; a < 3; a++) {
-      double x = vxm_position(soup, corner[i])[a];
-      bounds[a] = x < bounds[a] ? x : bounds[a];
-      bounds[a + 3] = x > bounds[a + 3] ? x : bounds[a + 3];
-    }
+    vxm_box_include(bounds, bounds + 3, vxm_position(soup, corner[i]));
   vxm_unit_scale own = vxm_unit_scale_of(bounds);
   return vxm_polygon_fan_area(soup->positions, corner, count, own.scale) >
          sliver * own.diagonal * own.diagonal;

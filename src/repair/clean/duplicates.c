@@ -26,7 +26,7 @@ static vxm_status remove_repeated(vxm_repair_state *state, uint8_t *kinds, vxm_c
   size_t faces = state->soup->face_count;
   vxm_duplicates found;
   uint8_t *seen = NULL;
-  vxm_status status = vxm_duplicates_find(&found, state->context, state->soup, NULL, kinds, copies, error);
+  vxm_status status = vxm_duplicates_find(&found, state->context, state->soup, kinds, copies, error);
   uint8_t *remove =
       status == VXM_OK ? vxm_repair_state_scratch(state, faces, sizeof *remove, &status, error) : NULL;
   if (remove)
@@ -47,7 +47,7 @@ static vxm_status look_for_repeated(vxm_repair_state *state, bool *any, vxm_erro
   vxm_duplicates found = {0};
   vxm_status status = vxm_repair_state_patches(state, error);
   if (status == VXM_OK && (!state->has_patches || state->patches.may_repeat))
-    status = vxm_duplicates_find(&found, state->context, state->soup, NULL, NULL, NULL, error);
+    status = vxm_duplicates_find(&found, state->context, state->soup, NULL, NULL, error);
   *any = found.same + found.opposite_pairs > 0;
   return status;
 }

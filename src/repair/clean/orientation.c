@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
+#include "mesh/sort.h"
 #include "repair/clean/spanning_turns.h"
 #include "repair/state/repair_state.h"
 
@@ -236,9 +237,7 @@ typedef struct crossing {
 
 static int by_edge_then_patch(const void *a, const void *b) {
   const crossing *p = a, *q = b;
-  if (p->edge != q->edge)
-    return p->edge < q->edge ? -1 : 1;
-  return p->patch < q->patch ? -1 : p->patch > q->patch;
+  return vxm_compare_pairs(p->edge, p->patch, q->edge, q->patch);
 }
 
 /** Lists (or, with NULL, counts) the sides at crossings, as the faces are turned by now. */
@@ -343,13 +342,8 @@ static void choose_sides(const vxm_containment *containment, const uint8_t *soli
 /** Volume about the middle of the model of all faces as they are by now. */
 static double volume_of_all(const orienting *o) {
   double volume = 0;
-  for (size_t f = 0; f < o->soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(o->soup, f, &count);
-    if (count > 0)
-      volume += vxm_polygon_cone(
-          vxm_vec3_between(vxm_position(o->soup, corner[0]), o->frame.centre, o->frame.scale), area_of(o, f));
-  }
+  for (size_t f = 0; f < o->soup->face_count; f++)
+    volume += vxm_face_cone(NULL, o->soup, f, o->frame.centre, o->frame.scale);
   return volume;
 }
 

@@ -231,7 +231,7 @@ static vxm_status mark_repeated(aligning *a, vxm_error *error) {
     return status;
   kinds = vxm_repair_state_scratch(a->state, some->face_count, sizeof *kinds, &status, error);
   if (kinds)
-    status = vxm_duplicates_find(&found, a->state->context, some, NULL, kinds, NULL, error);
+    status = vxm_duplicates_find(&found, a->state->context, some, kinds, NULL, error);
   for (size_t i = 0; kinds && status == VXM_OK && i < some->face_count; i++)
     a->again[numbers[i]] = kinds[i] != VXM_REPEAT_NONE;
   vxm_free(a->state->context, kinds);
@@ -241,14 +241,10 @@ static vxm_status mark_repeated(aligning *a, vxm_error *error) {
 }
 
 static void add_volume(aligning *a, size_t face) {
-  size_t count;
-  const uint32_t *corner = vxm_face(a->soup, face, &count);
-  vxm_vec3 area = vxm_polygon_area(a->soup->positions, corner, count, a->frame.scale);
+  vxm_vec3 area;
   group_sums *g = group_of(a, face);
+  g->volume += vxm_face_cone(&area, a->soup, face, a->frame.centre, a->frame.scale);
   g->area += vxm_vec3_length(area);
-  if (count > 0)
-    g->volume += vxm_polygon_cone(
-        vxm_vec3_between(vxm_position(a->soup, corner[0]), a->frame.centre, a->frame.scale), area);
 }
 
 /** Sums up the groups asked for; `odd` is scratch per edge. */

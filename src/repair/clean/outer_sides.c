@@ -59,14 +59,10 @@ static vxm_status for_each_side(turning *t, side_fn visit, vxm_error *error) {
 
 static void add_volumes(turning *t, vxm_unit_scale frame) {
   for (size_t f = 0; f < t->soup->face_count; f++) {
-    size_t count;
     bool against;
-    const uint32_t *corner = vxm_face(t->soup, f, &count);
-    if (!t->counts[f] || count == 0)
+    if (!t->counts[f])
       continue;
-    double cone =
-        vxm_polygon_cone(vxm_vec3_between(vxm_position(t->soup, corner[0]), frame.centre, frame.scale),
-                         vxm_polygon_area(t->soup->positions, corner, count, frame.scale));
+    double cone = vxm_face_cone(NULL, t->soup, f, frame.centre, frame.scale);
     patch *p = &t->patches[vxm_turned_set_of(t->links, f, &against)];
     p->volume += against ? -cone : cone;
     p->sizes += fabs(cone);

@@ -32,9 +32,9 @@ static void measure(dropping *d) {
       continue;
     if (!p->origin)
       p->origin = vxm_position(soup, corner[0]);
-    vxm_vec3 area = vxm_polygon_area(soup->positions, corner, count, d->scale);
+    vxm_vec3 area;
+    p->volume += vxm_face_cone(&area, soup, f, p->origin, d->scale);
     p->area += vxm_vec3_length(area);
-    p->volume += vxm_polygon_cone(vxm_vec3_between(vxm_position(soup, corner[0]), p->origin, d->scale), area);
     for (size_t i = 0; i < count; i++)
       d->at[corner[i]] = d->label[f];
   }

@@ -32,11 +32,11 @@ static vxm_status choose_flat(choosing *c, const uint8_t *cross, vxm_error *erro
     size_t count;
     uint32_t own = c->component[f];
     const uint32_t *corner = vxm_face(soup, f, &count);
-    const double *p = vxm_position(soup, corner[0]);
-    from[own] = from[own] ? from[own] : p;
-    vxm_vec3 area = vxm_polygon_area(soup->positions, corner, count, scale);
+    if (!from[own] && count > 0)
+      from[own] = vxm_position(soup, corner[0]);
+    vxm_vec3 area;
+    sums[own][1] += vxm_face_cone(&area, soup, f, from[own], scale);
     sums[own][0] += vxm_vec3_length(area);
-    sums[own][1] += vxm_polygon_cone(vxm_vec3_between(p, from[own], scale), area);
   }
   for (size_t i = 0; from && i < c->count; i++)
     c->chosen[i] |= cross[i] && fabs(sums[i][1]) <= NO_VOLUME * pow(sums[i][0], 1.5);
@@ -142,11 +142,11 @@ static vxm_status wrap_marked(vxm_repair_state *state, const uint8_t *faces, vxm
   return status;
 }
 
-/** Wraps the parts that the union had to leave, where that was asked for; they have names still, but no
+/** Wraps the parts that are in the way of a union, where that was asked for; they have names still, but no
  * volumes to compare. */
 vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!(state->options.fallback_alpha > 0) || state->union_failures == 0)
+  if (!(state->options.fallback_alpha > 0))
     return VXM_OK;
   int64_t count = 0;
   vxm_status status = VXM_OK;

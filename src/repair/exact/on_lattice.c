@@ -41,17 +41,20 @@ void vxm_before_union_destroy(vxm_before_union *kept, vxm_context *context) {
   *kept = (vxm_before_union){.soup = NULL};
 }
 
-void vxm_snap_to_lattice(vxm_repair_state *state, int bits) {
+vxm_status vxm_snap_to_lattice(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  (void)error;
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
   double diagonal = vxm_extent_diagonal(extent.bounds);
-  double lattice = ldexp(1, ilogb(diagonal > 0 ? diagonal : 1) - bits);
-  if (!isfinite(diagonal) || !(lattice > 0))
-    return; /* at the ends of the numbers */
+  double lattice = ldexp(1, ilogb(diagonal > 0 ? diagonal : 1) - state->union_try.bits);
+  *changed = isfinite(diagonal) && lattice > 0; /* else at the ends of the numbers */
+  if (!*changed)
+    return VXM_OK;
   for (size_t i = 0; i < 3 * state->soup->vertex_count; i++)
     state->soup->positions[i] =
         vxm_repair_state_round(state, lattice * rint(state->soup->positions[i] / lattice));
   vxm_repair_state_move(state);
+  return VXM_OK;
 }
 
 vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_union *kept, vxm_error *error) {

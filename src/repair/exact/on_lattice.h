@@ -19,9 +19,10 @@ void vxm_before_union_destroy(vxm_before_union *kept, vxm_context *context);
 /** Goes back to the copy. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_union *kept, vxm_error *error);
 
-/** Moves the vertices to a lattice of 2^-bits of the diagonal: walls that lie nearly in one plane do then,
- * and unions have no slivers between them that come apart by less than numbers tell. */
-void vxm_snap_to_lattice(vxm_repair_state *state, int bits);
+/** A pass that moves the vertices to a lattice of 2^-bits of the diagonal (vxm_union_try): walls that lie
+ * nearly in one plane do then, and unions have no slivers between them that come apart by less than numbers
+ * tell. */
+vxm_status vxm_snap_to_lattice(vxm_repair_state *state, bool *changed, vxm_error *error);
 
 /** Whether faces cut through each other, or vertices could not be kept apart, although all parts were united
  * that had to be. */

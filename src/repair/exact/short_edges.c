@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/geometry.h"
+#include "mesh/sort.h"
 #include "repair/state/merge_rule.h"
 #include "repair/state/repair_state.h"
 
@@ -62,15 +63,13 @@ static int by_length(const void *a, const void *b) {
   const short_edge *p = a, *q = b;
   if (p->length != q->length)
     return p->length < q->length ? -1 : 1;
-  if (p->from != q->from)
-    return p->from < q->from ? -1 : 1;
-  return (p->to > q->to) - (p->to < q->to);
+  return vxm_compare_pairs(p->from, p->to, q->from, q->to);
 }
 
 /** Whether the ends are one vertex to programs that hold 32-bit floats. */
 static bool is_float_point(const collapsing *c, const vxm_edge *edge) {
   const double *a = vxm_position(c->soup, edge->a), *b = vxm_position(c->soup, edge->b);
-  if (c->state->doubles_only)
+  if (c->state->union_try.doubles_only)
     return false;
   for (int i = 0; i < 3; i++)
     if (vxm_merge_coordinate(a[i], VXM_MERGE_FLOAT) != vxm_merge_coordinate(b[i], VXM_MERGE_FLOAT))
@@ -185,7 +184,8 @@ static vxm_status apply(collapsing *c, vxm_error *error) {
 }
 
 static vxm_status collapse(collapsing *c, double diagonal, int64_t *total, vxm_error *error) {
-  const double most = c->state->collapses ? SHORT * diagonal : 0, most_float = SHORT_FLOAT * diagonal;
+  const double most = c->state->union_try.collapses ? SHORT * diagonal : 0,
+               most_float = SHORT_FLOAT * diagonal;
   vxm_status status = VXM_OK;
   *total = 0;
   for (int round = 0; round < ROUNDS && status == VXM_OK; round++) {

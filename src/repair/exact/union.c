@@ -109,7 +109,7 @@ vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *err
   vxm_union_report report;
   vxm_status status = vxm_cgal_open(&cgal, "uniting parts", error);
   if (status == VXM_OK)
-    status = cgal->unite(&soup, &origin, &report, state->soup, state->outward_only, error);
+    status = cgal->unite(&soup, &origin, &report, state->soup, state->union_try.outward_only, error);
   if (status != VXM_OK)
     return status;
   status = find_left(state, soup, origin, &report, error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/exact/union_loss.h"
 
+#include "base/box.h"
 #include "mesh/box_tree.h"
 #include "mesh/components.h"
 #include "mesh/geometry.h"
@@ -29,29 +30,16 @@ typedef struct looking {
 static void measure(looking *l, double scale) {
   const vxm_soup *soup = l->before;
   for (size_t i = 0; i < l->count; i++)
-    for (int x = 0; x < 6; x++)
-      l->box[i][x] = x < 3 ? INFINITY : -INFINITY;
+    vxm_box_empty(l->box[i], l->box[i] + 3);
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
     double *box = l->box[l->label[f]];
-    for (size_t c = 0; c < count; c++) {
-      const double *p = vxm_position(soup, corner[c]);
-      for (int x = 0; x < 3; x++) {
-        box[x] = fmin(box[x], p[x]);
-        box[x + 3] = fmax(box[x + 3], p[x]);
-      }
-    }
+    for (size_t c = 0; c < count; c++)
+      vxm_box_include(box, box + 3, vxm_position(soup, corner[c]));
   }
-  for (size_t f = 0; f < soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(soup, f, &count);
-    if (count == 0)
-      continue;
-    vxm_vec3 area = vxm_polygon_area(soup->positions, corner, count, scale);
-    l->volume[l->label[f]] +=
-        vxm_polygon_cone(vxm_vec3_between(vxm_position(soup, corner[0]), l->box[l->label[f]], scale), area);
-  }
+  for (size_t f = 0; f < soup->face_count; f++)
+    l->volume[l->label[f]] += vxm_face_cone(NULL, soup, f, l->box[l->label[f]], scale);
 }
 
 static void find_kinds(looking *l) {

@@ -126,18 +126,6 @@ static void find_free(const vxm_repair_state *state, const vxm_position_set *tak
 
 /* ---- Adding the caps ---- */
 
-static bool grow_marks(vxm_cap_plan *p, size_t vertices) {
-  uint8_t **marks[2] = {&p->state->gone, &p->state->used};
-  for (int i = 0; i < 2; i++) {
-    uint8_t *grown = vxm_realloc(p->state->context, *marks[i], vertices, 1, &p->error);
-    if (!grown)
-      return false;
-    memset(grown + p->soup->vertex_count, 0, vertices - p->soup->vertex_count);
-    *marks[i] = grown;
-  }
-  return true;
-}
-
 static bool make_room(vxm_cap_plan *p, size_t faces, size_t points) {
   vxm_soup *soup = p->soup;
   size_t total = soup->face_count + faces;
@@ -163,7 +151,7 @@ static bool make_room(vxm_cap_plan *p, size_t faces, size_t points) {
     memset(turned + soup->face_count, VXM_ADDED, faces);
     p->state->turned = turned;
   }
-  return grow_marks(p, soup->vertex_count + points);
+  return vxm_repair_state_grow_marks(p->state, soup->vertex_count, soup->vertex_count + points, &p->error);
 }
 
 /** Adds the cap of a loop, of which there is room; `first` is the number that new vertices were planned

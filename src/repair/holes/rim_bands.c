@@ -2,6 +2,7 @@
 #include "repair/holes/rim_bands.h"
 
 #include "mesh/geometry.h"
+#include "mesh/sort.h"
 #include "repair/holes/cap_plan.h"
 
 #include <stdlib.h>
@@ -232,9 +233,7 @@ static int smaller_first(const void *a, const void *b) {
   const band *p = a, *q = b;
   if (p->area != q->area)
     return p->area < q->area ? -1 : 1;
-  if (p->first != q->first)
-    return p->first < q->first ? -1 : 1;
-  return p->second < q->second ? -1 : p->second > q->second;
+  return vxm_compare_pairs(p->first, p->second, q->first, q->second);
 }
 
 static bool find_bands(joining *j) {

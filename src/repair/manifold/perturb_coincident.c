@@ -189,7 +189,7 @@ static bool move(moving *m, uint32_t v) {
   double to[3], *p = m->soup->positions + 3 * (size_t)v;
   static const precision first[] = {FLOATS, DOUBLES}, then[] = {FLOATS, NEXT_FLOAT};
   bool found = false;
-  for (int i = m->state->options.single_precision || m->state->doubles_only; i < 2 && !found; i++) {
+  for (int i = m->state->options.single_precision || m->state->union_try.doubles_only; i < 2 && !found; i++) {
     vxm_position_move by = moves_of(m, v, s, m->floats_only ? then[i] : first[i]);
     found = vxm_free_positions_find(&m->near, v, &by, to);
   }
@@ -331,7 +331,8 @@ vxm_status vxm_pass_perturb_coincident(vxm_repair_state *state, bool *changed, v
   vxm_status status = move_by(&m, m.rule, &moved, error);
   state->unparted_vertices = (int64_t)m.shared - moved;
   m.floats_only = true;
-  if (status == VXM_OK && !state->options.single_precision && !state->doubles_only && are_floats(&extent))
+  if (status == VXM_OK && !state->options.single_precision && !state->union_try.doubles_only &&
+      are_floats(&extent))
     status = move_by(&m, VXM_MERGE_FLOAT, &as_floats, error);
   *changed = moved > 0 || as_floats > 0;
   if (*changed)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/sort.h"
 #include "repair/manifold/halfedge_pairing.h"
 
 #include <stdlib.h>
@@ -89,9 +90,7 @@ static int by_places(const void *a, const void *b) {
   const rim_side *p = a, *q = b;
   if (p->low != q->low)
     return p->low < q->low ? -1 : 1;
-  if (p->high != q->high)
-    return p->high < q->high ? -1 : 1;
-  return (p->side > q->side) - (p->side < q->side);
+  return vxm_compare_pairs(p->high, p->side, q->high, q->side);
 }
 
 static void sort_rim(stitching *s) {

@@ -70,7 +70,7 @@ static bool drop_repeated(thickening *t) {
   uint8_t *kinds = vxm_alloc(soup->context, soup->face_count, sizeof *kinds, &t->error);
   if (!kinds)
     return false;
-  vxm_status status = vxm_duplicates_find(&found, soup->context, soup, NULL, kinds, NULL, &t->error);
+  vxm_status status = vxm_duplicates_find(&found, soup->context, soup, kinds, NULL, &t->error);
   size_t kept = 0;
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++)
     if (kinds[f] == VXM_REPEAT_NONE) {

@@ -3,6 +3,7 @@
 
 #include "mesh/geometry.h"
 #include "mesh/point_in_mesh.h"
+#include "mesh/sort.h"
 
 #include <float.h>
 #include <math.h>
@@ -31,9 +32,7 @@ typedef struct keyed_set {
 
 static int by_group_then_face(const void *a, const void *b) {
   const keyed_set *p = a, *q = b;
-  if (p->group != q->group)
-    return p->group < q->group ? -1 : 1;
-  return p->set.face < q->set.face ? -1 : p->set.face > q->set.face;
+  return vxm_compare_pairs(p->group, p->set.face, q->group, q->set.face);
 }
 
 /** Puts the faces of groups that are balanced, or of those that are not, behind `sorted`. */

@@ -272,6 +272,18 @@ void vxm_repair_state_mark_added(vxm_repair_state *state, size_t first) {
     state->turned[f] = VXM_ADDED;
 }
 
+bool vxm_repair_state_grow_marks(vxm_repair_state *state, size_t from, size_t to, vxm_error *error) {
+  uint8_t **marks[2] = {&state->gone, &state->used};
+  for (int i = 0; i < 2; i++) {
+    uint8_t *grown = vxm_realloc(state->context, *marks[i], to, 1, error);
+    if (!grown)
+      return false;
+    memset(grown + from, 0, to - from);
+    *marks[i] = grown;
+  }
+  return true;
+}
+
 vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error) {
   size_t vertices = state->soup->vertex_count;
   vxm_status status = VXM_OK;

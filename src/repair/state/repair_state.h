@@ -56,6 +56,14 @@ enum vxm_turned {
   VXM_ADDED = 2   /**< it did not come in */
 };
 
+/** How a level that unites parts is tried. */
+typedef struct vxm_union_try {
+  int bits;          /**< of the lattice that vertices are moved to before; 0 = none */
+  bool collapses;    /**< the shortest edges of unions are collapsed */
+  bool doubles_only; /**< vertices are not to differ as 32-bit floats: that would have faces meet */
+  bool outward_only; /**< unions leave out what parts wind round the other way */
+} vxm_union_try;
+
 /** A soup under repair. Vertices keep their numbers until the last pass removes those that are not used. */
 typedef struct vxm_repair_state {
   vxm_soup *soup;
@@ -86,9 +94,7 @@ typedef struct vxm_repair_state {
   int64_t emptied_parts;  /**< closed parts of whose inside unions have taken something away */
   int64_t union_tries;    /**< how often parts were united */
   int64_t wrapped_parts;  /**< parts that were wrapped as the union had left them */
-  bool collapses;         /**< the shortest edges of unions are collapsed */
-  bool outward_only;      /**< unions leave out what parts wind round the other way */
-  bool doubles_only;      /**< vertices are not to differ as 32-bit floats: that would have faces meet */
+  vxm_union_try union_try;
   int64_t self_intersections[2]; /**< before and after, or -1 */
   int64_t unparted_vertices;     /**< vertices that were to be moved apart and could not be */
   vxm_provenance *provenance;    /**< what becomes of the parts, or NULL */
@@ -156,6 +162,8 @@ vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint6
                                   vxm_error *error);
 /** Faces from `first` on did not come in, though they come from some that did. */
 void vxm_repair_state_mark_added(vxm_repair_state *state, size_t first);
+/** Makes room for the marks of `to` vertices, of which those from `from` on are new. */
+bool vxm_repair_state_grow_marks(vxm_repair_state *state, size_t from, size_t to, vxm_error *error);
 /** Makes the marks of vertices anew, after the soup was exchanged. */
 vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error);
 /** What a position becomes where positions are to be held by 32-bit floats, else itself. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/weld/vertex_clusters.h"
 
+#include "base/box.h"
+
 enum {
   CLUSTER_MAX = 256, /**< vertices of the smaller of two clusters that may still be joined */
   FACES_MAX = 4096   /**< at the vertices of the smaller of two clusters */
@@ -71,11 +73,8 @@ static box box_of(const vxm_vertex_clusters *clusters, uint32_t root) {
 }
 
 static box box_around(const box *p, const box *q) {
-  box around;
-  for (int a = 0; a < 3; a++) {
-    around.low[a] = p->low[a] < q->low[a] ? p->low[a] : q->low[a];
-    around.high[a] = p->high[a] > q->high[a] ? p->high[a] : q->high[a];
-  }
+  box around = *p;
+  vxm_box_join(around.low, around.high, q->low, q->high);
   return around;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/closest/distance_bvh.h"
 #include "base/bits.h"
+#include "base/box.h"
 #include "base/cpu.h"
 #include "base/threads.h"
 #include "mesh/spatial_sort.h"
@@ -35,13 +36,6 @@ static void make_centroids(size_t slice, int worker, void *payload) {
 
 /* ---- Packs ---- */
 
-static void grow(double box[2][3], const double p[3]) {
-  for (int a = 0; a < 3; a++) {
-    box[0][a] = p[a] < box[0][a] ? p[a] : box[0][a];
-    box[1][a] = p[a] > box[1][a] ? p[a] : box[1][a];
-  }
-}
-
 /** A point in the middle of a box, and how far the box reaches from it. */
 static float middle_of(double origin[3], double box[2][3]) {
   double reach2 = 0;
@@ -73,16 +67,13 @@ static void make_pack(builder *b, size_t at) {
   vxm_pack *pack = &tree->packs[at];
   size_t first = at * VXM_PACK, end = (size_t)vxm_min((int64_t)(first + VXM_PACK), (int64_t)tree->count);
   double(*box)[3] = b->boxes[at];
-  for (int a = 0; a < 3; a++) {
-    box[0][a] = INFINITY;
-    box[1][a] = -INFINITY;
-  }
+  vxm_box_empty(box[0], box[1]);
   for (size_t i = first; i < end; i++) {
     double corner[3][3];
     b->corners(corner, b->centroids[i].index, b->payload);
     vxm_distance_triangle_make(&tree->triangles[i], (const double(*)[3])corner);
     for (int c = 0; c < 3; c++)
-      grow(box, corner[c]);
+      vxm_box_include(box[0], box[1], corner[c]);
   }
   pack->reach = middle_of(pack->origin, box);
   for (int lane = 0; lane < VXM_PACK; lane++) /* the last triangle fills up */
@@ -108,10 +99,8 @@ static void make_node(builder *b, size_t at) {
   size_t first = at * VXM_PACK, count = children - first < VXM_PACK ? children - first : VXM_PACK;
   double box[2][3];
   memcpy(box, b->boxes[first], sizeof box);
-  for (size_t c = 1; c < count; c++) {
-    grow(box, b->boxes[first + c][0]);
-    grow(box, b->boxes[first + c][1]);
-  }
+  for (size_t c = 1; c < count; c++)
+    vxm_box_join(box[0], box[1], b->boxes[first + c][0], b->boxes[first + c][1]);
   node->reach = middle_of(node->origin, box);
   node->valid = (uint32_t)vxm_low_bits((unsigned)count);
   for (size_t c = 0; c < VXM_PACK; c++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/closest/surface_tree.h"
+#include "base/box.h"
 #include "base/neon.h"
 #include "mesh/spatial_sort.h"
 #include "voxel/closest/closest_point.h"
@@ -95,26 +96,20 @@ static disc disc_of(const vxm_closest_triangle *t) {
 
 static void make_leaf(vxm_surface_tree *tree, size_t leaf) {
   box *b = &tree->boxes[tree->leaf_count + leaf];
-  for (int a = 0; a < 3; a++) {
-    b->low[a] = INFINITY;
-    b->high[a] = -INFINITY;
-  }
+  vxm_box_empty(b->low, b->high);
   for (size_t i = leaf * LEAF; i < (leaf + 1) * LEAF && i < tree->count; i++)
     for (int c = 0; c < 3; c++)
-      for (int a = 0; a < 3; a++) {
-        b->low[a] = fmin(b->low[a], tree->triangles[i].at[c][a]);
-        b->high[a] = fmax(b->high[a], tree->triangles[i].at[c][a]);
-      }
+      vxm_box_include(b->low, b->high, tree->triangles[i].at[c]);
 }
 
 static void make_boxes(vxm_surface_tree *tree) {
   for (size_t leaf = 0; leaf < tree->leaf_count; leaf++)
     make_leaf(tree, leaf);
-  for (size_t n = tree->leaf_count - 1; n > 0; n--)
-    for (int a = 0; a < 3; a++) {
-      tree->boxes[n].low[a] = fmin(tree->boxes[2 * n].low[a], tree->boxes[2 * n + 1].low[a]);
-      tree->boxes[n].high[a] = fmax(tree->boxes[2 * n].high[a], tree->boxes[2 * n + 1].high[a]);
-    }
+  for (size_t n = tree->leaf_count - 1; n > 0; n--) {
+    const box *child = &tree->boxes[2 * n + 1];
+    tree->boxes[n] = tree->boxes[2 * n];
+    vxm_box_join(tree->boxes[n].low, tree->boxes[n].high, child->low, child->high);
+  }
 }
 
 static vxm_status fill(vxm_surface_tree *tree, vxm_spatial_point *spots, vxm_surface_corners_fn corners,

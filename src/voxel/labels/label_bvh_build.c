@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/box.h"
 #include "base/threads.h"
 #include "mesh/triangulate.h"
 #include "voxel/labels/label_bvh_tree.h"
@@ -85,27 +86,13 @@ static vxm_status make_items(builder *b, vxm_error *error) {
 
 /* ---- Nodes ---- */
 
-static void bound_nothing(node *n) {
-  for (int a = 0; a < 3; a++) {
-    n->low[a] = INFINITY;
-    n->high[a] = -INFINITY;
-  }
-}
-
-static void bound(node *n, const double low[3], const double high[3]) {
-  for (int a = 0; a < 3; a++) {
-    n->low[a] = low[a] < n->low[a] ? low[a] : n->low[a];
-    n->high[a] = high[a] > n->high[a] ? high[a] : n->high[a];
-  }
-}
-
 static void bound_triangles(const builder *b, node *n) {
-  bound_nothing(n);
+  vxm_box_empty(n->low, n->high);
   for (uint32_t i = n->begin; i < n->end; i++)
     for (int c = 0; c < 3; c++) {
       double p[3];
       place(b->bvh, p, b->items[i].corner[c]);
-      bound(n, p, p);
+      vxm_box_include(n->low, n->high, p);
     }
 }
 
@@ -215,10 +202,10 @@ static void grow_upper_tree(builder *b) {
       bvh->root[at->label - 1] = n;
       continue;
     }
-    bound_nothing(at);
+    vxm_box_empty(at->low, at->high);
     for (uint32_t i = at->begin; i < at->end; i++) {
       const node *root = &b->roots[b->boxes[i].corner[0]];
-      bound(at, root->low, root->high);
+      vxm_box_join(at->low, at->high, root->low, root->high);
     }
     split(b, at, b->boxes, &next);
   }

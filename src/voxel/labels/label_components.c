@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels/label_components.h"
+#include "base/box.h"
 #include "mesh/components.h"
 #include "mesh/containment.h"
 #include "mesh/edges.h"
@@ -79,10 +80,7 @@ static vxm_status find_open(builder *b) {
 
 static void bound_bodies(builder *b, double scale) {
   for (size_t i = 0; i < b->body_count; i++)
-    for (int a = 0; a < 3; a++) {
-      b->bodies[i].low[a] = INFINITY;
-      b->bodies[i].high[a] = -INFINITY;
-    }
+    vxm_box_empty(b->bodies[i].low, b->bodies[i].high);
   for (size_t f = 0; f < b->soup->face_count; f++) {
     body *of = &b->bodies[b->component[f]];
     size_t n;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels/surface_paint.h"
 #include "mesh/inward_faces.h"
+#include "mesh/nonfinite.h"
 #include "mesh/triangulate.h"
 
 #include <math.h>
@@ -18,19 +19,12 @@ typedef struct cutter {
   size_t capacity, number_capacity, triangle_capacity;
 } cutter;
 
-static bool is_finite(const vxm_soup *soup, const uint32_t *corners, const uint32_t corner[3]) {
-  bool good = true;
-  for (int c = 0; c < 3; c++)
-    for (int a = 0; a < 3; a++)
-      good = good && isfinite(vxm_position(soup, corners[corner[c]])[a]);
-  return good;
-}
-
 static vxm_status add(cutter *cut, size_t face, const uint32_t *corners, const uint32_t corner[3],
                       vxm_error *error) {
   vxm_surface_paint *paint = cut->paint;
   vxm_context *context = paint->soup->context;
-  if (!is_finite(paint->soup, corners, corner))
+  const uint32_t triangle[3] = {corners[corner[0]], corners[corner[1]], corners[corner[2]]};
+  if (!vxm_face_is_finite(paint->soup, triangle, 3))
     return VXM_OK;
   if (paint->count >= UINT32_MAX - 1 || face > UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "colours: the mesh has 2^32 triangles or more");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/parts/lone_sheets.h"
 
+#include "base/box.h"
 #include "mesh/nonfinite.h"
 
 #include <math.h>
@@ -17,20 +18,15 @@ typedef struct box {
   size_t component;
 } box;
 
-static void include(box *b, const double *p) {
-  for (int a = 0; a < 3; a++) {
-    b->low[a] = p[a] < b->low[a] ? p[a] : b->low[a];
-    b->high[a] = p[a] > b->high[a] ? p[a] : b->high[a];
-  }
-}
-
 static void measure(box *boxes, const uint32_t *number, const vxm_soup *soup, const uint32_t *component) {
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
-    for (size_t i = 0; i < count && number[component[f]] != UINT32_MAX; i++)
+    for (size_t i = 0; i < count && number[component[f]] != UINT32_MAX; i++) {
+      box *b = &boxes[number[component[f]]];
       if (vxm_is_finite(vxm_position(soup, corner[i])))
-        include(&boxes[number[component[f]]], vxm_position(soup, corner[i]));
+        vxm_box_include(b->low, b->high, vxm_position(soup, corner[i]));
+    }
   }
 }
 
@@ -78,9 +74,10 @@ vxm_status vxm_lone_sheets_keep(vxm_opening *openings, const vxm_soup *soup, con
   listed = 0;
   for (size_t c = 0; number && boxes && c < count; c++) {
     number[c] = has_opening(&openings[c]) ? (uint32_t)listed : UINT32_MAX;
-    if (has_opening(&openings[c]))
-      boxes[listed++] =
-          (box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, .component = c};
+    if (!has_opening(&openings[c]))
+      continue;
+    vxm_box_empty(boxes[listed].low, boxes[listed].high);
+    boxes[listed++].component = c;
   }
   if (number && boxes) {
     measure(boxes, number, soup, component);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/parts/triangle_set.h"
+#include "base/box.h"
 #include "mesh/quad_diagonal.h"
 #include "mesh/triangulate.h"
 
@@ -286,18 +287,11 @@ static inline double larger(double most, double x) {
   return x > most ? x : most;
 }
 
+/** Of positions that may be no numbers. */
 static void find_box(vxm_triangle_set *triangles) {
-  double *low = triangles->low, *high = triangles->high;
-  for (int a = 0; a < 3; a++) {
-    low[a] = INFINITY;
-    high[a] = -INFINITY;
-  }
+  vxm_box_empty(triangles->low, triangles->high);
   for (size_t p = 0; p < triangles->first_apex; p++)
-    for (int a = 0; a < 3; a++) {
-      double at = triangles->positions[p][a]; /* which may be no number */
-      low[a] = at < low[a] ? at : low[a];
-      high[a] = at > high[a] ? at : high[a];
-    }
+    vxm_box_include(triangles->low, triangles->high, triangles->positions[p]);
 }
 
 /** Sums up how long triangles are. A cone reaches from its edge to somewhere among the triangles. */

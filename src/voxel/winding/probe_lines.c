@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/probe_lines.h"
 
-#include <math.h>
+#include "base/box.h"
+
 #include <string.h>
 
 /** Cells of parts with few points, which are not worth many. Both numbers are primes: places lie between
@@ -88,12 +89,10 @@ static size_t count_points(uint32_t in_cell[2][VXM_PROBE_CELLS], const vxm_probe
 }
 
 static bool measure(vxm_probe_places places[3], int *along, const double (*points)[3], size_t count) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  double low[3], high[3];
+  vxm_box_empty(low, high);
   for (size_t i = 0; i < count; i++)
-    for (int a = 0; a < 3; a++) {
-      low[a] = points[i][a] < low[a] ? points[i][a] : low[a];
-      high[a] = points[i][a] > high[a] ? points[i][a] : high[a];
-    }
+    vxm_box_include(low, high, points[i]);
   *along = 0;
   for (int a = 0; a < 3; a++) {
     places[a].count = 0;
