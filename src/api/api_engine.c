@@ -49,8 +49,9 @@ vxm_status vxm_engines_find(vxm_engine_info *out, int64_t capacity, int64_t *cou
   status = vxm_engines_list(NULL, 0, count, context, error);
   int64_t room = capacity < *count ? capacity : *count;
   if (status == VXM_OK && room > 0) {
-    made = vxm_calloc(context, (size_t)room, sizeof *made, error);
-    status = made ? vxm_engines_list(made, room, count, context, error) : VXM_ERROR_MEMORY;
+    made = vxm_try_calloc(context, (size_t)room, sizeof *made, &status, error);
+    if (made)
+      status = vxm_engines_list(made, room, count, context, error);
   }
   for (int64_t i = 0; status == VXM_OK && i < room; i++)
     VXM_RESULT_WRITE((vxm_engine_info *)((char *)out + (size_t)i * vxm_result_stride(out, sizeof *made)),

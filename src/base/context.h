@@ -30,6 +30,12 @@ vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, bool alone,
 void *vxm_alloc(vxm_context *context, size_t count, size_t size, vxm_error *error);
 /** As vxm_alloc, zeroed (cheap for large blocks: the system hands out zero pages). */
 void *vxm_calloc(vxm_context *context, size_t count, size_t size, vxm_error *error);
+/**
+ * vxm_alloc and vxm_calloc for a function that returns a status: where they fail, *status becomes the code of
+ * the message, whether or not one is asked for; else it stays as it is.
+ */
+void *vxm_try_alloc(vxm_context *context, size_t count, size_t size, vxm_status *status, vxm_error *error);
+void *vxm_try_calloc(vxm_context *context, size_t count, size_t size, vxm_status *status, vxm_error *error);
 /** Grows or shrinks a block, keeping its content; on failure the block stays valid and NULL is returned. */
 void *vxm_realloc(vxm_context *context, void *block, size_t count, size_t size, vxm_error *error);
 /** Frees a block of this context; NULL is allowed. */

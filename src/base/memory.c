@@ -222,6 +222,25 @@ void *vxm_calloc(vxm_context *context, size_t count, size_t size, vxm_error *err
   return allocate(context, count, size, true, error);
 }
 
+static void *try_allocate(vxm_context *context, size_t count, size_t size, bool zero, vxm_status *status,
+                          vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  void *block = allocate(context, count, size, zero, &local);
+  if (!block) {
+    *status = local.code;
+    vxm_error_pass(error, &local);
+  }
+  return block;
+}
+
+void *vxm_try_alloc(vxm_context *context, size_t count, size_t size, vxm_status *status, vxm_error *error) {
+  return try_allocate(context, count, size, false, status, error);
+}
+
+void *vxm_try_calloc(vxm_context *context, size_t count, size_t size, vxm_status *status, vxm_error *error) {
+  return try_allocate(context, count, size, true, status, error);
+}
+
 /** Into a block that is larger. */
 static void *move_block(vxm_context *context, void *block, size_t count, size_t size, vxm_error *error) {
   void *moved = vxm_alloc(context, count, size, error);

@@ -290,8 +290,10 @@ static vxm_status vote_restorable(vxm_engine *engine, const vxm_window *part, co
   size_t words = part->slice_words * (size_t)(part->end - part->begin);
   uint64_t *before = vxm_alloc(context, words, sizeof *before, &local);
   if (!before) {
+    if (local.code == VXM_ERROR_MEMORY)
+      local.code = VXM_ERROR_MEMORY_LIMIT; /* it is not the device's */
     vxm_error_pass(error, &local);
-    return local.code == VXM_ERROR_MEMORY ? VXM_ERROR_MEMORY_LIMIT : local.code; /* it is not the device's */
+    return local.code;
   }
   memcpy(before, part->words, words * sizeof *before);
   vxm_status status = engine->ops->vote(engine, part, job, tally, error);
@@ -425,13 +427,12 @@ static void add(vxm_multi_device *group, vxm_engine *engine) {
 
 vxm_status vxm_multi_device_create(vxm_engine **out, vxm_context *context, vxm_engine *const engines[],
                                    int number, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_multi_device *group = vxm_calloc(context, 1, sizeof *group, &local);
+  vxm_status status = VXM_OK;
+  vxm_multi_device *group = vxm_try_calloc(context, 1, sizeof *group, &status, error);
   if (!group) {
     for (int m = 0; m < number; m++)
       vxm_engine_destroy(engines[m]);
-    vxm_error_pass(error, &local);
-    return local.code;
+    return status;
   }
   group->ops = (vxm_engine_ops){.unite = unite, .vote = vote, .surface = surface, .destroy = destroy};
   group->base.ops = &group->ops;

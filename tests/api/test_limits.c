@@ -3,9 +3,11 @@
  */
 #include "api_support.h"
 
+#include <ftw.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 /* ---- A run through everything ---- */
 
@@ -104,6 +106,54 @@ static void test_memory_limit(void **state) {
   assert_true(refused > 5);
   assert_true(hash == free_hash);
   free(text);
+}
+
+static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *where) {
+  (void)info;
+  (void)type;
+  (void)where;
+  return remove(path);
+}
+
+/** Writes labels within a limit; what is returned is what the error has. */
+static vxm_status write_within(uint64_t limit, const char *path) {
+  static const uint16_t values[64] = {1, 0, 2, 0, 3, 1};
+  vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+  options.memory_limit = limit;
+  options.threads = 1;
+  vxm_context *context;
+  assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
+  vxm_space space = {.dims = {4, 4, 4}, .voxel_size = {1, 1, 1}};
+  vxm_field *field = NULL;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_status status = vxm_field_create(&field, context, &space, VXM_FIELD_LABELS, VXM_UINT16, values, &error);
+  if (status == VXM_OK)
+    status = vxm_field_write(field, path, NULL, &error);
+  if (status != VXM_OK)
+    assert_int_equal(error.code, status);
+  vxm_field_destroy(field);
+  vxm_context_destroy(context);
+  return status;
+}
+
+/** Whatever allocation of a format is the one that does not fit any more. */
+static void test_limits_of_formats(void **state) {
+  (void)state;
+  static const char *const names[] = {"x.nrrd", "x.npy",    "x.zarr",   "x.h5",    "x.nii",   "x.nii.gz",
+                                      "x.tif",  "x.vti",    "x.vtk",    "x.vox",   "x.schem", "x.litematic",
+                                      "x.glb",  "x.binvox", "x.octree", "x_%d.png"};
+  enum { STEP = 128 /* as the least block takes */ };
+  char folder[] = "limits-test-XXXXXX", path[64];
+  assert_non_null(mkdtemp(folder));
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+    snprintf(path, sizeof path, "%s/%s", folder, names[n]);
+    vxm_status status = VXM_ERROR_MEMORY_LIMIT;
+    for (uint64_t limit = 1024; status == VXM_ERROR_MEMORY_LIMIT; limit += STEP)
+      status = write_within(limit, path);
+    if (status != VXM_OK && status != VXM_ERROR_UNAVAILABLE)
+      fail_msg("%s: %s", names[n], vxm_status_name(status));
+  }
+  assert_int_equal(nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
 }
 
 /** A grid that cannot fit is refused before anything is allocated for it. */
@@ -244,9 +294,9 @@ static void test_two_threads(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_huge_grid),
-      cmocka_unit_test(test_cancelling),   cmocka_unit_test(test_lifetimes),
-      cmocka_unit_test(test_two_threads),
+      cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_limits_of_formats),
+      cmocka_unit_test(test_huge_grid),    cmocka_unit_test(test_cancelling),
+      cmocka_unit_test(test_lifetimes),    cmocka_unit_test(test_two_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

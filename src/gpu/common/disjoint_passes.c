@@ -148,9 +148,10 @@ static vxm_status list_triangles(division *d, vxm_error *error) {
     ranges_of(job, job->part_begin + i, begin, end);
     total += end[0] - begin[0] + (end[1] - begin[1]);
   }
-  uint32_t *order = vxm_alloc(d->context, total, sizeof *order, error);
+  vxm_status status = VXM_OK;
+  uint32_t *order = vxm_try_alloc(d->context, total, sizeof *order, &status, error);
   if (!order)
-    return VXM_ERROR_MEMORY;
+    return status;
   /* The place of each part's triangles: those of the passes before it, then of the parts before it. */
   memset(passes->triangle_end, 0, passes->count * sizeof *passes->triangle_end);
   for (size_t i = 0; i < parts; i++) {
@@ -178,9 +179,10 @@ static vxm_status list_triangles(division *d, vxm_error *error) {
 static vxm_status list_boxes(division *d, vxm_error *error) {
   vxm_disjoint_passes *passes = d->passes;
   size_t parts = d->job->part_end - d->job->part_begin, at = 0;
-  vxm_pass_box *sorted = vxm_alloc(d->context, parts, sizeof *sorted, error);
+  vxm_status status = VXM_OK;
+  vxm_pass_box *sorted = vxm_try_alloc(d->context, parts, sizeof *sorted, &status, error);
   if (!sorted)
-    return VXM_ERROR_MEMORY;
+    return status;
   memset(passes->box_end, 0, passes->count * sizeof *passes->box_end);
   for (size_t i = 0; i < parts; i++)
     passes->box_end[passes->pass_of[i]] += !is_empty(&d->boxes[i]);
@@ -202,10 +204,10 @@ static vxm_status divide(division *d, vxm_error *error) {
   vxm_context *context = d->context;
   size_t parts = d->job->part_end - d->job->part_begin;
   vxm_status status = VXM_OK;
-  passes->pass_of = vxm_calloc(context, parts, sizeof *passes->pass_of, error);
-  d->boxes = passes->pass_of ? vxm_alloc(context, parts, sizeof *d->boxes, error) : NULL;
+  passes->pass_of = vxm_try_calloc(context, parts, sizeof *passes->pass_of, &status, error);
+  d->boxes = passes->pass_of ? vxm_try_alloc(context, parts, sizeof *d->boxes, &status, error) : NULL;
   if (!d->boxes)
-    return VXM_ERROR_MEMORY;
+    return status;
   for (size_t i = 0; i < parts && status == VXM_OK && !d->is_over; i++) {
     d->boxes[i] = box_of(d, d->job->part_begin + i);
     status = find_pass(d, i, error);
@@ -217,11 +219,12 @@ static vxm_status divide(division *d, vxm_error *error) {
     return status;
   }
   passes->count = passes->count > 0 ? passes->count : 1;
-  passes->triangle_end = vxm_alloc(context, passes->count, sizeof *passes->triangle_end, error);
-  passes->box_end =
-      passes->triangle_end ? vxm_alloc(context, passes->count, sizeof *passes->box_end, error) : NULL;
+  passes->triangle_end = vxm_try_alloc(context, passes->count, sizeof *passes->triangle_end, &status, error);
+  passes->box_end = passes->triangle_end
+                        ? vxm_try_alloc(context, passes->count, sizeof *passes->box_end, &status, error)
+                        : NULL;
   if (!passes->box_end)
-    return VXM_ERROR_MEMORY;
+    return status;
   status = list_triangles(d, error);
   return status == VXM_OK && d->job->has_voxels ? list_boxes(d, error) : status;
 }
@@ -229,17 +232,13 @@ static vxm_status divide(division *d, vxm_error *error) {
 vxm_status vxm_disjoint_passes_create(vxm_disjoint_passes *out, vxm_context *context,
                                       const vxm_window *window, const vxm_parity_union_job *job,
                                       int64_t margin, size_t most, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
   *out = (vxm_disjoint_passes){.context = context, .part_begin = job->part_begin};
   division d = {
       .context = context, .window = window, .job = job, .margin = margin, .most = most, .passes = out};
-  vxm_status status = divide(&d, &local);
+  vxm_status status = divide(&d, error);
   vxm_free(context, d.boxes);
   vxm_free(context, d.taken);
-  if (status == VXM_OK)
-    return VXM_OK;
-  vxm_error_pass(error, &local);
-  return local.code; /* that of the allocation, where it was one */
+  return status;
 }
 
 void vxm_disjoint_passes_destroy(vxm_disjoint_passes *passes) {

@@ -13,39 +13,55 @@ vxm_status vxm_deflate_check(const char *path, vxm_error *error) {
   return VXM_OK;
 }
 
+/* ---- Memory for zlib, which tells what stood against it only by NULL ---- */
+
+typedef struct noting {
+  vxm_context *context;
+  vxm_error fault;
+} noting;
+
 static void *take(void *payload, unsigned count, unsigned size) {
-  return vxm_alloc(payload, count, size, NULL);
+  noting *n = payload;
+  return vxm_alloc(n->context, count, size, &n->fault);
 }
 
 static void give(void *payload, void *block) {
-  vxm_free(payload, block);
+  const noting *n = payload;
+  vxm_free(n->context, block);
+}
+
+static vxm_status fail_memory(const noting *n, vxm_error *error) {
+  if (n->fault.code == VXM_OK)
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  vxm_error_pass(error, &n->fault);
+  return n->fault.code;
 }
 
 /* ---- Out ---- */
 
 struct vxm_deflater {
   z_stream z;
-  vxm_context *context;
   vxm_output *output;
+  noting memory;
 };
 
 vxm_status vxm_deflater_create(vxm_deflater **out, vxm_context *context, vxm_output *output,
                                vxm_deflate_frame frame, vxm_error *error) {
   enum { GZIP = 16, MEMORY_LEVEL = 8 };
   *out = NULL;
-  vxm_deflater *d = vxm_calloc(context, 1, sizeof *d, error);
+  vxm_status status = VXM_OK;
+  vxm_deflater *d = vxm_try_calloc(context, 1, sizeof *d, &status, error);
   if (!d)
-    return VXM_ERROR_MEMORY;
-  d->context = context;
-  d->output = output;
-  d->z.zalloc = take;
-  d->z.zfree = give;
-  d->z.opaque = context;
+    return status;
+  *d = (vxm_deflater){.z = {.zalloc = take, .zfree = give, .opaque = &d->memory},
+                      .output = output,
+                      .memory = {context, VXM_ERROR_INIT}};
   int window = MAX_WBITS + (frame == VXM_DEFLATE_GZIP ? GZIP : 0);
   if (deflateInit2(&d->z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) !=
       Z_OK) {
+    status = fail_memory(&d->memory, error);
     vxm_free(context, d);
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+    return status;
   }
   *out = d;
   return VXM_OK;
@@ -85,31 +101,7 @@ void vxm_deflater_destroy(vxm_deflater *d) {
   if (!d)
     return;
   deflateEnd(&d->z);
-  vxm_free(d->context, d);
-}
-
-/* ---- Memory that was asked for in vain ---- */
-
-typedef struct noting {
-  vxm_context *context;
-  vxm_error fault;
-} noting;
-
-static void *take_noting(void *payload, unsigned count, unsigned size) {
-  noting *n = payload;
-  return vxm_alloc(n->context, count, size, &n->fault);
-}
-
-static void give_noted(void *payload, void *block) {
-  const noting *n = payload;
-  vxm_free(n->context, block);
-}
-
-static vxm_status fail_memory(const noting *n, vxm_error *error) {
-  if (n->fault.code == VXM_OK)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  vxm_error_pass(error, &n->fault);
-  return n->fault.code;
+  vxm_free(d->memory.context, d);
 }
 
 /* ---- Blocks ---- */
@@ -121,7 +113,7 @@ size_t vxm_deflate_bound(size_t size) {
 vxm_status vxm_deflate_block(vxm_context *context, void *out, size_t *size, const void *data,
                              size_t data_size, vxm_error *error) {
   noting memory = {context, VXM_ERROR_INIT};
-  z_stream z = {.zalloc = take_noting, .zfree = give_noted, .opaque = &memory};
+  z_stream z = {.zalloc = take, .zfree = give, .opaque = &memory};
   if (data_size > VXM_DEFLATE_BLOCK_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "a block of %zu bytes is too large to be compressed", data_size);
   if (deflateInit(&z, Z_DEFAULT_COMPRESSION) != Z_OK)
@@ -148,19 +140,17 @@ struct vxm_inflater {
 vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_t offset, vxm_error *error) {
   enum { ANY_HEADER = 32 /* gzip's or zlib's own */ };
   *out = NULL;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_inflater *i = vxm_calloc(input->context, 1, sizeof *i, &local);
-  if (!i) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  *i = (vxm_inflater){.z = {.zalloc = take_noting, .zfree = give_noted, .next_in = input->data + offset},
+  vxm_status status = VXM_OK;
+  vxm_inflater *i = vxm_try_calloc(input->context, 1, sizeof *i, &status, error);
+  if (!i)
+    return status;
+  *i = (vxm_inflater){.z = {.zalloc = take, .zfree = give, .next_in = input->data + offset},
                       .input = input,
                       .is_gzip = input->size - offset >= 2 && input->data[offset] == 0x1f,
                       .memory = {input->context, VXM_ERROR_INIT}};
   i->z.opaque = &i->memory;
   if (inflateInit2(&i->z, ANY_HEADER + MAX_WBITS) != Z_OK) {
-    vxm_status status = fail_memory(&i->memory, error);
+    status = fail_memory(&i->memory, error);
     vxm_free(input->context, i);
     return status;
   }

@@ -34,16 +34,17 @@ static vxm_status check_field(const vxm_field *field, const char *path, vxm_erro
 }
 
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
-  state *s = vxm_calloc(w->context, 1, sizeof *s, error);
+  vxm_status status = VXM_OK;
+  state *s = vxm_try_calloc(w->context, 1, sizeof *s, &status, error);
   if (!s)
-    return VXM_ERROR_MEMORY;
+    return status;
   w->state = s;
   const vxm_hdf5_array array = {.space = w->space,
                                 .scalar = w->values.scalar,
                                 .channels = w->values.channels,
                                 .kind =
                                     w->values.is_bits ? "bits" : vxm_field_kind_name(w->values.about->kind)};
-  vxm_status status = open_module(&s->functions, error);
+  status = open_module(&s->functions, error);
   return status == VXM_OK ? s->functions->create(&s->file, w->context, &array, error) : status;
 }
 
@@ -56,12 +57,13 @@ static vxm_status put(vxm_values_writer *w, const void *values, int64_t begin, i
 static vxm_status put_labels(vxm_values_writer *w, vxm_error *error) {
   const state *s = w->state;
   const vxm_label_table *table = &w->values.about->table;
-  vxm_hdf5_label *labels = vxm_alloc(w->context, table->count, sizeof *labels, error);
+  vxm_status status = VXM_OK;
+  vxm_hdf5_label *labels = vxm_try_alloc(w->context, table->count, sizeof *labels, &status, error);
   if (!labels)
-    return VXM_ERROR_MEMORY;
+    return status;
   for (size_t l = 0; l < table->count; l++)
     labels[l] = (vxm_hdf5_label){vxm_label_table_name(table, l + 1), table->voxels[l]};
-  vxm_status status = s->functions->label(s->file, labels, table->count, error);
+  status = s->functions->label(s->file, labels, table->count, error);
   vxm_free(w->context, labels);
   return status;
 }

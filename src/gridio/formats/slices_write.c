@@ -115,13 +115,13 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   vxm_status status = check(&w->space, &w->values, w->path, error);
   if (status != VXM_OK)
     return status;
-  state *s = vxm_calloc(w->context, 1, sizeof *s, error);
+  state *s = vxm_try_calloc(w->context, 1, sizeof *s, &status, error);
   if (!s)
-    return VXM_ERROR_MEMORY;
+    return status;
   w->state = s;
   s->row_bytes = w->slice_bytes / (size_t)w->space.dims[1];
-  s->row = vxm_alloc(w->context, s->row_bytes, 1, error);
-  return s->row ? VXM_OK : VXM_ERROR_MEMORY;
+  s->row = vxm_try_alloc(w->context, s->row_bytes, 1, &status, error);
+  return status;
 }
 
 /** Bits become black and white, and numbers of 16 bits have their high byte first. */

@@ -178,11 +178,12 @@ static void put_header(vxm_values_writer *w, const tiff *t) {
 }
 
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
-  tiff *t = vxm_calloc(w->context, 1, sizeof *t, error);
+  vxm_status status = VXM_OK;
+  tiff *t = vxm_try_calloc(w->context, 1, sizeof *t, &status, error);
   if (!t)
-    return VXM_ERROR_MEMORY;
+    return status;
   w->state = t;
-  vxm_status status = describe(t, w, error);
+  status = describe(t, w, error);
   if (status != VXM_OK)
     return status;
   plan(t, w, false);

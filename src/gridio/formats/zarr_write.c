@@ -103,23 +103,20 @@ static vxm_status check_field(const vxm_field *field, const char *path, vxm_erro
 }
 
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
   vxm_status status = check(&w->space, &w->values, w->path, error);
   if (status != VXM_OK)
     return status;
-  state *s = w->state = vxm_calloc(w->context, 1, sizeof *s, error);
+  state *s = w->state = vxm_try_calloc(w->context, 1, sizeof *s, &status, error);
   if (!s)
-    return VXM_ERROR_MEMORY;
+    return status;
   s->array = describe(&w->space, &w->values);
   s->voxel_bytes = voxel_bytes(&w->values);
   s->workers = (size_t)vxm_context_threads(w->context);
-  s->slab = vxm_alloc(w->context, (size_t)s->array.chunk[0], w->slice_bytes, &local);
+  s->slab = vxm_try_alloc(w->context, (size_t)s->array.chunk[0], w->slice_bytes, &status, error);
   if (s->slab)
-    s->room = vxm_calloc(w->context, s->workers, sizeof *s->room, &local);
-  if (local.code != VXM_OK) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+    s->room = vxm_try_calloc(w->context, s->workers, sizeof *s->room, &status, error);
+  if (!s->room)
+    return status;
   status = vxm_atomic_folder_open(&s->folder, w->path, ".zarray", is_part, "a Zarr array", error);
   s->is_open = status == VXM_OK;
   return status;

@@ -111,10 +111,11 @@ static vxm_status rebuild(vxm_gltf *out, const json_t *root, const layout *parts
   if (!json)
     return out_of_memory(error);
   out->size = before + padded + rest;
-  out->data = vxm_alloc(context, out->size, 1, error);
+  vxm_status status = VXM_OK;
+  out->data = vxm_try_alloc(context, out->size, 1, &status, error);
   if (!out->data) {
     free(json);
-    return VXM_ERROR_MEMORY;
+    return status;
   }
   memcpy(out->data, request->data, before);
   memcpy(out->data + before, json, length);

@@ -59,9 +59,11 @@ static json_int_t mesh_with_bones(const json_t *node) {
 static vxm_status warn_bones(const converter *c, vxm_warnings *warnings, vxm_error *error) {
   const json_t *node, *mesh, *meshes = json_object_get(c->root, "meshes");
   size_t n, m, count = json_array_size(meshes);
-  bool *has_bones = vxm_calloc(c->buffers->context, count, sizeof *has_bones, error), found = false;
+  vxm_status status = VXM_OK;
+  bool *has_bones = vxm_try_calloc(c->buffers->context, count, sizeof *has_bones, &status, error),
+       found = false;
   if (!has_bones)
-    return VXM_ERROR_MEMORY;
+    return status;
   json_array_foreach(json_object_get(c->root, "nodes"), n, node) {
     json_int_t index = mesh_with_bones(node);
     if (index >= 0 && (size_t)index < count)

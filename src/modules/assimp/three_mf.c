@@ -243,9 +243,9 @@ vxm_status vxm_three_mf_check(double *unit, const vxm_reader_request *request, v
   vxm_status status = VXM_OK;
   int models = 0;
   *unit = 1;
-  look *seen = vxm_alloc(context, 1, sizeof *seen, error);
+  look *seen = vxm_try_alloc(context, 1, sizeof *seen, &status, error);
   if (!seen)
-    return VXM_ERROR_MEMORY;
+    return status;
   bool more = vxm_zip_open(&zip, request->data, request->size);
   while (more && status == VXM_OK && vxm_zip_next(&zip, &member)) {
     if (!is_model(&member))
@@ -264,9 +264,10 @@ vxm_status vxm_three_mf_check(double *unit, const vxm_reader_request *request, v
 
 vxm_status vxm_three_mf_narrow(unsigned char **out, const vxm_reader_request *request, vxm_context *context,
                                vxm_error *error) {
-  *out = vxm_alloc(context, request->size, 1, error);
+  vxm_status status = VXM_OK;
+  *out = vxm_try_alloc(context, request->size, 1, &status, error);
   if (!*out)
-    return VXM_ERROR_MEMORY;
+    return status;
   memcpy(*out, request->data, request->size);
   if (!vxm_zip_narrow(*out, request->size)) {
     vxm_free(context, *out);

@@ -143,9 +143,10 @@ static vxm_status create(vxm_hdf5 **out, vxm_context *context, const vxm_hdf5_ar
   *out = NULL;
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  vxm_hdf5 *file = vxm_calloc(context, 1, sizeof *file, error);
+  vxm_status status = VXM_OK;
+  vxm_hdf5 *file = vxm_try_calloc(context, 1, sizeof *file, &status, error);
   if (!file)
-    return VXM_ERROR_MEMORY;
+    return status;
   *file = (vxm_hdf5){.context = context,
                      .array = *array,
                      .rank = array->channels > 1 ? 4 : 3,

@@ -140,9 +140,9 @@ static vxm_status send_axes(const reading *r, vxm_error *error) {
 static vxm_status send_labels(const reading *r, vxm_error *error) {
   const texts names = read_texts(r, "label_names");
   vxm_status status = VXM_OK;
-  int64_t *voxels = vxm_calloc(r->context, names.count + 1, sizeof *voxels, error);
+  int64_t *voxels = vxm_try_calloc(r->context, names.count + 1, sizeof *voxels, &status, error);
   if (!voxels)
-    return VXM_ERROR_MEMORY;
+    return status;
   hid_t attribute = names.count > 0 && H5Aexists(r->set.set, "label_voxels") > 0
                         ? H5Aopen(r->set.set, "label_voxels", H5P_DEFAULT)
                         : H5I_INVALID_HID;
@@ -260,8 +260,8 @@ static vxm_status send_slab(const reading *r, unsigned char *room, hsize_t begin
 }
 
 static vxm_status send_values(const reading *r, vxm_error *error) {
-  unsigned char *room = vxm_alloc(r->context, (size_t)r->slices, r->slice_bytes, error);
-  vxm_status status = room ? VXM_OK : VXM_ERROR_MEMORY;
+  vxm_status status = VXM_OK;
+  unsigned char *room = vxm_try_alloc(r->context, (size_t)r->slices, r->slice_bytes, &status, error);
   for (hsize_t at = 0; at < r->set.dims[0] && status == VXM_OK; at += r->slices) {
     hsize_t left = r->set.dims[0] - at;
     status = send_slab(r, room, at, left < r->slices ? left : r->slices, error);
@@ -292,9 +292,10 @@ vxm_status vxm_hdf5_read_array(vxm_voxel_sink *sink, vxm_context *context, const
                                vxm_error *error) {
   enum { NEEDED = 4 << 20 }; /* with less HDF5 crashes, where it should say so */
   static vxm_hdf5_survey survey;
-  void *room = vxm_alloc(context, NEEDED, 1, error);
+  vxm_status status = VXM_OK;
+  void *room = vxm_try_alloc(context, NEEDED, 1, &status, error);
   if (!room)
-    return VXM_ERROR_MEMORY;
+    return status;
   vxm_free(context, room);
   reading r = {.sink = sink, .context = context, .request = request};
   hid_t file = vxm_hdf5_open_image(request->data, request->size);
@@ -302,7 +303,7 @@ vxm_status vxm_hdf5_read_array(vxm_voxel_sink *sink, vxm_context *context, const
     return fail_inside(&r, "it", error);
   if (!vxm_hdf5_look(&survey, file))
     return fail_inside(&r, "what is in it", error);
-  vxm_status status = choose(&r, &survey, error);
+  status = choose(&r, &survey, error);
   if (status == VXM_OK)
     status = open_set(&r, file, survey.name, error);
   if (status == VXM_OK)

@@ -83,9 +83,10 @@ static void read_all(jpeg_reader *reader, vxm_image *image, vxm_context *context
 
 vxm_status vxm_picture_read_jpeg(vxm_image *image, vxm_context *context, const vxm_picture_file *file,
                                  vxm_error *error) {
-  jpeg_reader *reader = vxm_calloc(context, 1, sizeof *reader, error);
+  vxm_status status = VXM_OK;
+  jpeg_reader *reader = vxm_try_calloc(context, 1, sizeof *reader, &status, error);
   if (!reader)
-    return VXM_ERROR_MEMORY;
+    return status;
   reader->decoder.err = jpeg_std_error(&reader->errors);
   reader->decoder.client_data = reader;
   reader->errors.error_exit = on_error;
@@ -98,7 +99,7 @@ vxm_status vxm_picture_read_jpeg(vxm_image *image, vxm_context *context, const v
   if (reader->status == VXM_OK && reader->errors.num_warnings > 0)
     reader->status = vxm_fail(error, VXM_ERROR_FORMAT, "damaged JPEG: %.160s", reader->message);
   jpeg_destroy_decompress(&reader->decoder);
-  vxm_status status = reader->status;
+  status = reader->status;
   vxm_free(context, reader);
   return status;
 }

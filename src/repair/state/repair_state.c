@@ -8,13 +8,7 @@
 
 void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t size, vxm_status *status,
                                vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  void *block = vxm_calloc(state->context, count, size, &local);
-  if (!block) {
-    *status = local.code;
-    vxm_error_pass(error, &local);
-  }
-  return block;
+  return vxm_try_calloc(state->context, count, size, status, error);
 }
 
 vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error) {

@@ -47,14 +47,16 @@ static vxm_status cut_polygons(uint32_t *out, vxm_context *context, const vxm_so
 }
 
 static vxm_status list_triangles(vxm_surface *surface, const vxm_soup *soup, vxm_error *error) {
+  vxm_status status = VXM_OK;
   if (has_triangles_only(soup)) {
     surface->triangle_count = soup->face_count;
     surface->corners = soup->indices;
   } else {
     surface->triangle_count = count_triangles(soup);
-    surface->cut = vxm_alloc(surface->context, surface->triangle_count, 3 * sizeof *surface->cut, error);
+    surface->cut =
+        vxm_try_alloc(surface->context, surface->triangle_count, 3 * sizeof *surface->cut, &status, error);
     if (!surface->cut)
-      return VXM_ERROR_MEMORY;
+      return status;
     surface->corners = surface->cut;
   }
   if (surface->triangle_count > UINT32_MAX)
@@ -122,9 +124,10 @@ static vxm_status snap_wide(vxm_surface *surface, const double (*positions)[3], 
   size_t count = surface->soup->vertex_count;
   vxm_free(surface->context, surface->narrow);
   surface->narrow = NULL;
-  surface->wide = vxm_alloc(surface->context, count, sizeof *surface->wide, error);
+  vxm_status status = VXM_OK;
+  surface->wide = vxm_try_alloc(surface->context, count, sizeof *surface->wide, &status, error);
   if (!surface->wide)
-    return VXM_ERROR_MEMORY;
+    return status;
   bool is_off = false;
   for (size_t v = 0; v < count; v++) {
     double moved[3];
@@ -144,20 +147,17 @@ static vxm_status snap_wide(vxm_surface *surface, const double (*positions)[3], 
 static vxm_status place(vxm_surface *surface, const double (*positions)[3], const vxm_lattice *lattice,
                         const double transform[12], vxm_error *error) {
   static atomic_uint_fast64_t last_serial;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   surface->serial = atomic_fetch_add(&last_serial, 1) + 1;
   surface->lattice = *lattice;
   vxm_free(surface->context, surface->wide);
   surface->wide = NULL;
   if (!surface->narrow)
     surface->narrow =
-        vxm_alloc(surface->context, surface->soup->vertex_count, sizeof *surface->narrow, &local);
-  if (!surface->narrow || (!snap_narrow(surface, positions, transform) &&
-                           snap_wide(surface, positions, transform, &local) != VXM_OK)) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  return VXM_OK;
+        vxm_try_alloc(surface->context, surface->soup->vertex_count, sizeof *surface->narrow, &status, error);
+  if (surface->narrow && !snap_narrow(surface, positions, transform))
+    status = snap_wide(surface, positions, transform, error);
+  return status;
 }
 
 vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
@@ -173,21 +173,21 @@ vxm_status vxm_surface_place_moved(vxm_surface *surface, const double (*position
 vxm_status vxm_surface_make(vxm_surface **out, vxm_context *context, const vxm_soup *soup, vxm_error *error) {
   *out = NULL;
   static atomic_uint_fast64_t last_corners;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_surface *surface = vxm_calloc(context, 1, sizeof *surface, &local);
-  vxm_status status = surface ? vxm_context_acquire(&surface->context, context, &local) : local.code;
+  vxm_status status = VXM_OK;
+  vxm_surface *surface = vxm_try_calloc(context, 1, sizeof *surface, &status, error);
+  if (surface)
+    status = vxm_context_acquire(&surface->context, context, error);
   if (status == VXM_OK) {
     surface->soup = soup;
     surface->corners_serial = atomic_fetch_add(&last_corners, 1) + 1;
-    status = list_triangles(surface, soup, &local);
+    status = list_triangles(surface, soup, error);
   }
   if (status == VXM_OK) {
     *out = surface;
     return VXM_OK;
   }
   vxm_surface_destroy(surface);
-  vxm_error_pass(error, &local);
-  return local.code;
+  return status;
 }
 
 vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
