@@ -39,12 +39,10 @@ vxm_status vxm_noise_create(vxm_noise *out, vxm_context *context, uint64_t seed,
   *out = (vxm_noise){0};
   if (amount == 0)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  out->vectors = vxm_alloc(context, size, sizeof *out->vectors, &local);
-  if (!out->vectors) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  out->vectors = vxm_try_alloc(context, size, sizeof *out->vectors, &status, error);
+  if (!out->vectors)
+    return status;
   out->size = size;
   out->serial = atomic_fetch_add(&last_serial, 1) + 1;
   out->reach = vxm_noise_reach(kind, amount);

@@ -16,13 +16,11 @@ static vxm_status copy_rotations(vxm_sampler *sampler, vxm_error *error) {
   vxm_sampler_options *options = &sampler->rules.options;
   if (options->rotation != VXM_ROTATION_LIST)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   size_t count = 9 * (size_t)options->rotation_count;
-  sampler->rotations = vxm_alloc(sampler->context, count, sizeof *sampler->rotations, &local);
-  if (!sampler->rotations) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  sampler->rotations = vxm_try_alloc(sampler->context, count, sizeof *sampler->rotations, &status, error);
+  if (!sampler->rotations)
+    return status;
   memcpy(sampler->rotations, options->rotations, count * sizeof *sampler->rotations);
   options->rotations = sampler->rotations;
   return VXM_OK;

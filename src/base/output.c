@@ -76,12 +76,10 @@ static vxm_status open_path(vxm_output *output, const char *path, vxm_error *err
 
 vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *path, vxm_error *error) {
   *out = NULL;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_output *output = vxm_alloc(context, 1, sizeof *output, &local);
-  if (!output) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  vxm_output *output = vxm_try_alloc(context, 1, sizeof *output, &status, error);
+  if (!output)
+    return status;
   output->context = context;
   output->failure = 0;
   output->used = 0;
@@ -90,7 +88,7 @@ vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *p
   output->is_file = false;
   output->is_stdout = strcmp(path, "-") == 0;
   output->descriptor = STDOUT_FILENO;
-  vxm_status status = output->is_stdout ? VXM_OK : open_path(output, path, error);
+  status = output->is_stdout ? VXM_OK : open_path(output, path, error);
   if (status != VXM_OK) {
     output_free(output);
     return status;

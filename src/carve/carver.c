@@ -21,12 +21,11 @@ enum {
  * faces. */
 static vxm_status copy_triangles(vxm_carver *carver, vxm_error *error) {
   const vxm_triangle_set *set = &carver->model->analysis.triangles;
-  vxm_error local = VXM_ERROR_INIT;
-  carver->triangles = vxm_alloc(carver->context, set->triangle_count, sizeof *carver->triangles, &local);
-  if (!carver->triangles) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  carver->triangles =
+      vxm_try_alloc(carver->context, set->triangle_count, sizeof *carver->triangles, &status, error);
+  if (!carver->triangles)
+    return status;
   for (size_t t = 0; t < set->triangle_count; t++) {
     if (vxm_role_of(set, t) == VXM_ROLE_CONE)
       continue;

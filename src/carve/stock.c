@@ -52,13 +52,11 @@ static vxm_status grow_table(vxm_stock *stock, vxm_error *error) {
   if (stock->tile_capacity > 2 * stock->tile_count)
     return VXM_OK;
   vxm_stock larger = *stock;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   larger.tile_capacity = stock->tile_capacity ? 2 * stock->tile_capacity : TABLE_MIN;
-  larger.tiles = vxm_calloc(stock->context, larger.tile_capacity, sizeof *larger.tiles, &local);
-  if (!larger.tiles) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  larger.tiles = vxm_try_calloc(stock->context, larger.tile_capacity, sizeof *larger.tiles, &status, error);
+  if (!larger.tiles)
+    return status;
   for (size_t t = 0; t < stock->tile_capacity; t++)
     if (stock->tiles[t].bits)
       larger.tiles[place_of(&larger, stock->tiles[t].at)] = stock->tiles[t];

@@ -232,12 +232,10 @@ static void list_opencl(vxm_engine_info *out, int64_t capacity, int64_t *count, 
 static const vxm_engine_info cpu_info = {.name = "cpu", .available = true, .hardware = true, .devices = 1};
 
 static vxm_status make_cpu(vxm_engine **out, vxm_context *context, const char *note, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  *out = vxm_calloc(context, 1, sizeof **out, &local);
-  if (!*out) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  *out = vxm_try_calloc(context, 1, sizeof **out, &status, error);
+  if (!*out)
+    return status;
   (*out)->context = context;
   (*out)->info = cpu_info;
   snprintf((*out)->info.note, sizeof(*out)->info.note, "%.250s", note);

@@ -26,12 +26,9 @@ vxm_status vxm_bit_transpose_create(vxm_bit_transpose *out, vxm_context *context
                                     vxm_layout layout, vxm_error *error) {
   *out = planes_of(space, layout);
   out->context = context;
-  vxm_error local = VXM_ERROR_INIT;
-  out->words = vxm_calloc(context, out->count * out->plane_words, sizeof *out->words, &local);
-  if (out->words)
-    return VXM_OK;
-  vxm_error_pass(error, &local);
-  return local.code;
+  vxm_status status = VXM_OK;
+  out->words = vxm_try_calloc(context, out->count * out->plane_words, sizeof *out->words, &status, error);
+  return status;
 }
 
 void vxm_bit_transpose_destroy(vxm_bit_transpose *planes) {

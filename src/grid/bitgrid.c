@@ -59,21 +59,19 @@ vxm_status vxm_grid_create(vxm_grid **out, vxm_context *context, const vxm_space
   status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_grid *grid = vxm_calloc(owner, 1, sizeof *grid, &local);
+  vxm_grid *grid = vxm_try_calloc(owner, 1, sizeof *grid, &status, error);
   if (grid) {
     grid->context = owner;
     grid->space = *space;
     grid->row_words = ((size_t)space->dims[0] + 63) / 64;
     grid->slice_words = grid->row_words * (size_t)space->dims[1];
     grid->word_count = grid->slice_words * (size_t)space->dims[2];
-    grid->words = vxm_calloc(owner, grid->word_count, sizeof *grid->words, &local);
+    grid->words = vxm_try_calloc(owner, grid->word_count, sizeof *grid->words, &status, error);
   }
   if (!grid || !grid->words) {
     vxm_free(owner, grid);
     vxm_context_release(owner);
-    vxm_error_pass(error, &local);
-    return local.code;
+    return status;
   }
   *out = grid;
   return VXM_OK;
@@ -90,13 +88,12 @@ void vxm_grid_destroy(vxm_grid *grid) {
 }
 
 vxm_status vxm_grid_add_confidence(vxm_grid *grid, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   const int64_t *dims = grid->space.dims;
   if (!grid->confidence)
-    grid->confidence = vxm_calloc(grid->context, (size_t)dims[0] * (size_t)dims[1], (size_t)dims[2], &local);
-  if (!grid->confidence)
-    vxm_error_pass(error, &local);
-  return local.code;
+    grid->confidence =
+        vxm_try_calloc(grid->context, (size_t)dims[0] * (size_t)dims[1], (size_t)dims[2], &status, error);
+  return status;
 }
 
 static bool inside(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {

@@ -31,15 +31,13 @@ bool vxm_node_bits(uint64_t rows[VXM_NODE_SIDE * VXM_NODE_SIDE], const vxm_spars
 
 vxm_status vxm_node_boxes_create(vxm_node_boxes *out, vxm_context *context, size_t count, vxm_error *error) {
   size_t workers = (size_t)vxm_context_threads(context);
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   *out = (vxm_node_boxes){.context = context, .count = count};
-  out->box = vxm_alloc(context, count, sizeof *out->box, &local);
-  out->layer = vxm_alloc(context, count, sizeof *out->layer, &local);
-  out->row = vxm_alloc(context, workers * count, sizeof *out->row, &local);
-  out->row_count = vxm_calloc(context, workers, sizeof *out->row_count, &local);
-  if (local.code != VXM_OK)
-    vxm_error_pass(error, &local);
-  return local.code;
+  out->box = vxm_try_alloc(context, count, sizeof *out->box, &status, error);
+  out->layer = vxm_try_alloc(context, count, sizeof *out->layer, &status, error);
+  out->row = vxm_try_alloc(context, workers * count, sizeof *out->row, &status, error);
+  out->row_count = vxm_try_calloc(context, workers, sizeof *out->row_count, &status, error);
+  return status;
 }
 
 void vxm_node_boxes_destroy(vxm_node_boxes *boxes) {

@@ -24,12 +24,10 @@ vxm_status vxm_octree_new(vxm_sparse **out, vxm_context *context, const vxm_spac
   vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_sparse *sparse = vxm_calloc(owner, 1, sizeof *sparse, &local);
+  vxm_sparse *sparse = vxm_try_calloc(owner, 1, sizeof *sparse, &status, error);
   if (!sparse) {
     vxm_context_release(owner);
-    vxm_error_pass(error, &local);
-    return local.code;
+    return status;
   }
   sparse->context = owner;
   sparse->space = *space;

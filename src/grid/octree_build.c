@@ -33,17 +33,16 @@ static void end_strip(vxm_octree_builder *builder, vxm_strip_arena *arena, vxm_s
 
 vxm_status vxm_octree_builder_create(vxm_octree_builder *out, vxm_context *context, const vxm_space *space,
                                      vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   *out = (vxm_octree_builder){.context = context, .space = *space};
   out->across = (size_t)((space->dims[1] + VXM_STRIP_VOXELS - 1) / VXM_STRIP_VOXELS);
   out->deep = (size_t)((space->dims[2] + VXM_STRIP_VOXELS - 1) / VXM_STRIP_VOXELS);
   out->workers = (size_t)vxm_context_threads(context);
   atomic_init(&out->failed, VXM_OK);
-  out->strips = vxm_calloc(context, out->across * out->deep, sizeof *out->strips, &local);
-  out->arenas = out->strips ? vxm_calloc(context, out->workers, sizeof *out->arenas, &local) : NULL;
-  if (local.code != VXM_OK)
-    vxm_error_pass(error, &local);
-  return local.code;
+  out->strips = vxm_try_calloc(context, out->across * out->deep, sizeof *out->strips, &status, error);
+  out->arenas =
+      out->strips ? vxm_try_calloc(context, out->workers, sizeof *out->arenas, &status, error) : NULL;
+  return status;
 }
 
 void vxm_octree_builder_destroy(vxm_octree_builder *builder) {

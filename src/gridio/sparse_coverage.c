@@ -220,12 +220,9 @@ static vxm_status begin_job(job *j, vxm_context *context, const vxm_space *space
   if ((size_t)j->layers * j->layer_cubes > TASK_BYTES / sizeof *j->counts)
     j->layers = 1;
   j->task_cubes = (size_t)j->layers * j->layer_cubes;
-  vxm_error local = VXM_ERROR_INIT;
   size_t workers = (size_t)vxm_context_threads(context);
-  j->counts = vxm_alloc(context, workers, j->task_cubes * sizeof *j->counts, &local);
-  if (!j->counts)
-    vxm_error_pass(error, &local);
-  return local.code;
+  j->counts = vxm_try_alloc(context, workers, j->task_cubes * sizeof *j->counts, &status, error);
+  return status;
 }
 
 static vxm_status make(vxm_field **out, job *j, vxm_context *context, const vxm_space *space,

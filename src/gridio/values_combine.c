@@ -250,12 +250,11 @@ static void combine_slice(size_t x, int worker, void *payload) {
 static vxm_status combine_all(job *j, vxm_error *error) {
   vxm_context *context = j->out->context;
   size_t slices = (size_t)j->out->space.dims[0], row = (size_t)j->out->space.dims[2];
-  vxm_error local = VXM_ERROR_INIT;
-  j->rows = vxm_alloc(context, (size_t)vxm_context_threads(context), row * vxm_values_bytes(j->type), &local);
-  if (!j->rows) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  j->rows = vxm_try_alloc(context, (size_t)vxm_context_threads(context), row * vxm_values_bytes(j->type),
+                          &status, error);
+  if (!j->rows)
+    return status;
   vxm_task_progress_start(&j->progress, context, "combining", slices, error);
   vxm_parallel(context, slices, combine_slice, j);
   vxm_free(context, j->rows);

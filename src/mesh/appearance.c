@@ -6,12 +6,10 @@
 #include <string.h>
 
 vxm_status vxm_appearance_create(vxm_appearance **out, vxm_context *context, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  *out = vxm_calloc(context, 1, sizeof **out, &local);
-  if (!*out) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  *out = vxm_try_calloc(context, 1, sizeof **out, &status, error);
+  if (!*out)
+    return status;
   (*out)->context = context;
   return VXM_OK;
 }
@@ -79,12 +77,10 @@ static vxm_status settle(uint8_t (**out)[4], size_t *out_count, vxm_gathered *ga
                          vxm_context *context, vxm_error *error) {
   if (gathered->count == 0 || count == 0)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  *out = vxm_calloc(context, count, sizeof **out, &local);
-  if (!*out) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  *out = vxm_try_calloc(context, count, sizeof **out, &status, error);
+  if (!*out)
+    return status;
   *out_count = count;
   float unit = gathered->unit > 0 ? gathered->unit : gathered->largest > 1 ? 255.0F : 1.0F;
   for (size_t i = 0; i < count && i < gathered->count; i++) {
@@ -152,12 +148,10 @@ static vxm_status widen(vxm_name_index *index, vxm_context *context, name_list l
   if (4 * (index->count + 1) <= 3 * index->capacity)
     return VXM_OK;
   vxm_name_index wider = {.capacity = index->capacity ? 2 * index->capacity : 64, .count = index->count};
-  vxm_error local = VXM_ERROR_INIT;
-  wider.slots = vxm_calloc(context, wider.capacity, sizeof *wider.slots, &local);
-  if (!wider.slots) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  wider.slots = vxm_try_calloc(context, wider.capacity, sizeof *wider.slots, &status, error);
+  if (!wider.slots)
+    return status;
   for (size_t s = 0; s < index->capacity; s++)
     if (index->slots[s])
       *find_slot(&wider, list, name_at(list, index->slots[s] - 1)) = index->slots[s];

@@ -72,27 +72,26 @@ static void make_nodes(vxm_box_tree *tree) {
 
 vxm_status vxm_box_tree_build(vxm_box_tree *out, vxm_context *context, const double (*boxes)[6], size_t count,
                               vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   *out = (vxm_box_tree){.context = context, .boxes = boxes, .count = count, .leaves = 1};
   while (out->leaves * LEAF < count)
     out->leaves *= 2;
-  uint64_t *places = vxm_alloc(context, count, sizeof *places, &local);
-  uint64_t *keys = places ? vxm_alloc(context, count, sizeof *keys, &local) : NULL;
-  out->order = keys ? vxm_alloc(context, count, sizeof *out->order, &local) : NULL;
-  out->heap = out->order ? vxm_alloc(context, count + 1, sizeof *out->heap, &local) : NULL;
+  uint64_t *places = vxm_try_alloc(context, count, sizeof *places, &status, error);
+  uint64_t *keys = places ? vxm_try_alloc(context, count, sizeof *keys, &status, error) : NULL;
+  out->order = keys ? vxm_try_alloc(context, count, sizeof *out->order, &status, error) : NULL;
+  out->heap = out->order ? vxm_try_alloc(context, count + 1, sizeof *out->heap, &status, error) : NULL;
   if (out->heap)
     order_boxes(out, places, keys, out->heap);
   vxm_free(context, keys);
   vxm_free(context, places);
   if (out->heap)
-    out->nodes = vxm_alloc(context, 2 * out->leaves, sizeof *out->nodes, &local);
+    out->nodes = vxm_try_alloc(context, 2 * out->leaves, sizeof *out->nodes, &status, error);
   if (out->nodes) {
     make_nodes(out);
     return VXM_OK;
   }
   vxm_box_tree_destroy(out);
-  vxm_error_pass(error, &local);
-  return local.code;
+  return status;
 }
 
 void vxm_box_tree_destroy(vxm_box_tree *tree) {

@@ -150,12 +150,10 @@ static bool is_edge(const vxm_caps *caps, uint32_t p, uint32_t q) {
 static vxm_status add_chord(vxm_caps *caps, uint32_t p, uint32_t q, vxm_error *error) {
   if (2 * (caps->chord_count + 1) > caps->chord_slots) {
     size_t slots = caps->chord_slots > 0 ? 2 * caps->chord_slots : 64;
-    vxm_error local = VXM_ERROR_INIT;
-    uint64_t *chords = vxm_calloc(caps->soup->context, slots, sizeof *chords, &local);
-    if (!chords) {
-      vxm_error_pass(error, &local);
-      return local.code;
-    }
+    vxm_status status = VXM_OK;
+    uint64_t *chords = vxm_try_calloc(caps->soup->context, slots, sizeof *chords, &status, error);
+    if (!chords)
+      return status;
     for (size_t i = 0; i < caps->chord_slots; i++)
       if (caps->chords[i] != 0)
         chords[chord_slot(chords, slots, caps->chords[i])] = caps->chords[i];

@@ -112,13 +112,11 @@ static double narrow(long double x) {
 
 static vxm_status measure_faces(taking *t, vxm_error *error) {
   size_t slices = t->soup->face_count / FACES_PER_SLICE + 1;
-  vxm_error local = VXM_ERROR_INIT;
-  t->sums = vxm_alloc(t->context, slices, sizeof *t->sums, &local);
-  if (!t->sums) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  vxm_status status = vxm_parallel_cancellable(t->context, slices, add_slice, t, error);
+  vxm_status status = VXM_OK;
+  t->sums = vxm_try_alloc(t->context, slices, sizeof *t->sums, &status, error);
+  if (!t->sums)
+    return status;
+  status = vxm_parallel_cancellable(t->context, slices, add_slice, t, error);
   face_sums all = {0};
   for (size_t i = 0; i < slices && status == VXM_OK; i++) {
     all.area += t->sums[i].area;

@@ -6,14 +6,12 @@
 #include "mesh/unit_scale.h"
 
 vxm_status vxm_set_faces_create(vxm_set_faces *out, const vxm_soup *soup, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   *out = (vxm_set_faces){.context = soup->context};
-  out->faces = vxm_alloc(soup->context, soup->face_count, sizeof *out->faces, &local);
-  out->begin = vxm_calloc(soup->context, soup->set_count + 2, sizeof *out->begin, &local);
-  if (local.code != VXM_OK) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  out->faces = vxm_try_alloc(soup->context, soup->face_count, sizeof *out->faces, &status, error);
+  out->begin = vxm_try_calloc(soup->context, soup->set_count + 2, sizeof *out->begin, &status, error);
+  if (status != VXM_OK)
+    return status;
   /* Counted two places on: as faces are put in place the ends of sets become their beginnings. */
   for (size_t f = 0; f < soup->face_count; f++)
     out->begin[soup->face_sets[f] + 2]++;

@@ -144,12 +144,10 @@ vxm_status vxm_patches_are_apart(bool *apart, const vxm_patches *patches, const 
   *apart = true;
   if (patches->count < 2)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  uint32_t *at = vxm_alloc(soup->context, soup->vertex_count, sizeof *at, &local);
-  if (!at) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  uint32_t *at = vxm_try_alloc(soup->context, soup->vertex_count, sizeof *at, &status, error);
+  if (!at)
+    return status;
   memset(at, 0xff, soup->vertex_count * sizeof *at); /* NONE */
   for (size_t f = 0; f < soup->face_count && *apart; f++)
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {

@@ -9,13 +9,12 @@ vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *for
   vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_soup *soup = vxm_calloc(owner, 1, sizeof *soup, &local);
+  vxm_soup *soup = vxm_try_calloc(owner, 1, sizeof *soup, &status, error);
   if (soup) {
     soup->context = owner;
     soup->format = format;
-    soup->offsets = vxm_calloc(owner, 1, sizeof *soup->offsets, &local);
-    soup->indices = vxm_alloc(owner, 1, sizeof *soup->indices, &local);
+    soup->offsets = vxm_try_calloc(owner, 1, sizeof *soup->offsets, &status, error);
+    soup->indices = vxm_try_alloc(owner, 1, sizeof *soup->indices, &status, error);
     soup->corner_capacity = 1;
   }
   if (!soup || !soup->offsets || !soup->indices) {
@@ -25,8 +24,7 @@ vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *for
     }
     vxm_free(owner, soup);
     vxm_context_release(owner);
-    vxm_error_pass(error, &local);
-    return local.code;
+    return status;
   }
   *out = soup;
   return VXM_OK;
@@ -117,12 +115,9 @@ vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uin
                                sizeof *soup->tags, error);
   if (status != VXM_OK)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
-  char *copy = vxm_alloc(soup->context, length + 1, 1, &local);
-  if (!copy) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  char *copy = vxm_try_alloc(soup->context, length + 1, 1, &status, error);
+  if (!copy)
+    return status;
   memcpy(copy, name, length);
   copy[length] = '\0';
   *tag = (uint32_t)soup->tag_count;
@@ -138,12 +133,9 @@ vxm_status vxm_soup_add_companion(vxm_soup *soup, const char *name, vxm_error *e
                                soup->companion_count + 1, sizeof *soup->companions, error);
   if (status != VXM_OK)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
-  char *copy = vxm_alloc(soup->context, strlen(name) + 1, 1, &local);
-  if (!copy) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  char *copy = vxm_try_alloc(soup->context, strlen(name) + 1, 1, &status, error);
+  if (!copy)
+    return status;
   strcpy(copy, name);
   soup->companions[soup->companion_count++] = copy;
   return VXM_OK;

@@ -72,12 +72,10 @@ void vxm_extent_of(vxm_extent *out, vxm_context *context, const vxm_soup *soup, 
 }
 
 vxm_status vxm_extent_find(vxm_extent *out, vxm_context *context, const vxm_soup *soup, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  uint8_t *used = vxm_alloc(context, soup->vertex_count, sizeof *used, &local);
-  if (!used) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  uint8_t *used = vxm_try_alloc(context, soup->vertex_count, sizeof *used, &status, error);
+  if (!used)
+    return status;
   vxm_extent_of(out, context, soup, used);
   vxm_free(context, used);
   return VXM_OK;

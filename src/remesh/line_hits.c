@@ -93,13 +93,11 @@ static extent *slot_of(extent *table, size_t capacity, uint64_t key) {
 static vxm_status make_room(vxm_line_hits *hits, vxm_error *error) {
   if (hits->count < hits->capacity / 4 * 3)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   size_t capacity = hits->capacity ? 2 * hits->capacity : 1024;
-  extent *table = vxm_calloc(hits->context, capacity, sizeof *table, &local);
-  if (!table) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  extent *table = vxm_try_calloc(hits->context, capacity, sizeof *table, &status, error);
+  if (!table)
+    return status;
   for (size_t i = 0; i < hits->capacity; i++)
     if (hits->table[i].key)
       *slot_of(table, capacity, hits->table[i].key) = hits->table[i];

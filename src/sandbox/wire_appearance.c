@@ -46,14 +46,12 @@ bool vxm_wire_send_appearance(int channel, const vxm_appearance *appearance) {
 /** Fills a new array; none where the count is 0. */
 static vxm_status receive_array(void **out, size_t *out_count, uint64_t count, size_t size,
                                 vxm_context *context, vxm_process *sender, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   if (count == 0)
     return VXM_OK;
-  *out = vxm_alloc(context, (size_t)count, size, &local);
-  if (!*out) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  *out = vxm_try_alloc(context, (size_t)count, size, &status, error);
+  if (!*out)
+    return status;
   *out_count = (size_t)count;
   return vxm_process_receive(sender, *out, (size_t)count * size, error);
 }
@@ -88,16 +86,14 @@ static vxm_status receive_image(vxm_image *image, vxm_context *context, vxm_proc
 
 static vxm_status receive_images(vxm_appearance *appearance, uint64_t count, vxm_process *sender,
                                  vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   if (count == 0)
     return VXM_OK;
-  appearance->images = vxm_calloc(appearance->context, (size_t)count, sizeof *appearance->images, &local);
-  if (!appearance->images) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  appearance->images =
+      vxm_try_calloc(appearance->context, (size_t)count, sizeof *appearance->images, &status, error);
+  if (!appearance->images)
+    return status;
   appearance->image_capacity = (size_t)count;
-  vxm_status status = VXM_OK;
   while (appearance->image_count < count &&
          status == VXM_OK) /* counted first, as it may have bytes by then */
     status =

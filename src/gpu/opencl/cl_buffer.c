@@ -139,12 +139,10 @@ vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_erro
   cl_event made = NULL;
   uint64_t *to = vxm_slab_slice_at(&back->slab, back->slab.window->words, back->slab.begin);
   if (back->is_or || !is_dense(&back->slab)) {
-    vxm_error local = VXM_ERROR_INIT;
-    to = back->block = vxm_alloc(engine->base.context, back->slab.words, sizeof *to, &local);
-    if (!to) {
-      vxm_error_pass(error, &local);
-      return local.code;
-    }
+    vxm_status status = VXM_OK;
+    to = back->block = vxm_try_alloc(engine->base.context, back->slab.words, sizeof *to, &status, error);
+    if (!to)
+      return status;
   }
   cl_int code = cl->EnqueueMarkerWithWaitList(engine->queue, 0, NULL, &made);
   if (code == CL_SUCCESS)

@@ -47,7 +47,6 @@ vxm_status vxm_cl_device_voxels(vxm_engine *base, vxm_device_voxels **out, const
                                 vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
   vxm_device_info info = *shape;
-  vxm_error local = VXM_ERROR_INIT;
   info.kind = VXM_DEVICE_OPENCL;
   info.device = engine->number;
   info.context = engine->context;
@@ -56,11 +55,9 @@ vxm_status vxm_cl_device_voxels(vxm_engine *base, vxm_device_voxels **out, const
   vxm_status status = set_steps(&info, engine, error);
   if (status != VXM_OK)
     return status;
-  cl_voxels *made = vxm_calloc(base->context, 1, sizeof *made, &local);
-  if (!made) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  cl_voxels *made = vxm_try_calloc(base->context, 1, sizeof *made, &status, error);
+  if (!made)
+    return status;
   status = vxm_context_acquire(&made->base.context, base->context, error);
   made->base.info = info;
   made->base.layout = (vxm_layout){2, 1, 0};

@@ -63,13 +63,12 @@ static vxm_status start(vxm_opencl *engine, vxm_error *error) {
 vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_cl *cl,
                              const vxm_cl_device *device, int number, const vxm_engine_options *options,
                              vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_opencl *engine = vxm_calloc(context, 1, sizeof *engine, &local);
+  vxm_status status = VXM_OK;
+  vxm_opencl *engine = vxm_try_calloc(context, 1, sizeof *engine, &status, error);
   *out = NULL;
   if (!engine) {
     vxm_cl_device_release(device, cl);
-    vxm_error_pass(error, &local);
-    return local.code;
+    return status;
   }
   engine->base.ops = &opencl_ops;
   engine->base.context = context;
@@ -81,7 +80,7 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   engine->device = *device;
   engine->number = number;
   vxm_cl_device_describe(&engine->base.info, cl, device, number);
-  vxm_status status = start(engine, error);
+  status = start(engine, error);
   if (status != VXM_OK) {
     destroy(&engine->base);
     vxm_free(context, engine);

@@ -61,16 +61,13 @@ static vxm_status make_texture(vxm_opengl *engine, vxm_device_voxels *made, vxm_
 }
 
 static vxm_status make(vxm_opengl *engine, vxm_device_voxels **out, vxm_device_info *info, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
   vxm_context *context = engine->base.context;
   vxm_status status = measure(info, engine, error);
   if (status != VXM_OK)
     return status;
-  gl_voxels *made = vxm_calloc(context, 1, sizeof *made, &local);
-  if (!made) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  gl_voxels *made = vxm_try_calloc(context, 1, sizeof *made, &status, error);
+  if (!made)
+    return status;
   status = vxm_context_acquire(&made->base.context, context, error);
   made->base.info = *info;
   made->base.layout = (vxm_layout)VXM_LAYOUT_GRID;

@@ -93,12 +93,10 @@ static vxm_status list_triangles(slicing *s, vxm_error *error) {
                     "one slice meets %zu triangles, more than one draw may have; use "
                     "--gl-method columns",
                     total);
-  vxm_error local = VXM_ERROR_INIT;
-  uint32_t *list = vxm_alloc(context, total, sizeof *list, &local);
-  if (!list) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  uint32_t *list = vxm_try_alloc(context, total, sizeof *list, &status, error);
+  if (!list)
+    return status;
   memcpy(next, s->first, sizeof next);
   for (size_t i = s->triangle_begin; i < s->triangle_end && total > 0; i++) {
     int64_t begin, end;
@@ -108,7 +106,7 @@ static vxm_status list_triangles(slicing *s, vxm_error *error) {
     for (int64_t k = begin; k < end; k++)
       list[next[k - s->begin]++] = triangle;
   }
-  vxm_status status = vxm_gl_upload(s->engine, VXM_GL_LARGE, list, total * sizeof *list, error);
+  status = vxm_gl_upload(s->engine, VXM_GL_LARGE, list, total * sizeof *list, error);
   vxm_free(context, list);
   return status;
 }

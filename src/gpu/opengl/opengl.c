@@ -215,13 +215,11 @@ static vxm_status start(vxm_opengl *engine, vxm_error *error) {
 
 vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_gl_driver *driver, int index,
                              const vxm_engine_options *options, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_opengl *engine = vxm_calloc(context, 1, sizeof *engine, &local);
+  vxm_status status = VXM_OK;
+  vxm_opengl *engine = vxm_try_calloc(context, 1, sizeof *engine, &status, error);
   *out = NULL;
-  if (!engine) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  if (!engine)
+    return status;
   engine->base.ops = &opengl_ops;
   engine->base.wants_apexes = options->gl_method != VXM_GL_COLUMNS;
   engine->base.displaces = options->displacement > 0;
@@ -230,7 +228,7 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
       vxm_device_cache_of(&engine->base, vxm_gl_device_cache_upload, vxm_gl_device_cache_release);
   engine->options = *options;
   vxm_opengl_name(engine->base.info.name, sizeof engine->base.info.name, driver, index);
-  vxm_status status = vxm_gl_context_create(&engine->context, driver, index, error);
+  status = vxm_gl_context_create(&engine->context, driver, index, error);
   if (status == VXM_OK) {
     status = vxm_gl_enter(&engine->context, error);
     if (status == VXM_OK) {

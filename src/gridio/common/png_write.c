@@ -87,12 +87,10 @@ static vxm_status begin(vxm_png *png, int width, int height, vxm_png_pixels pixe
 vxm_status vxm_png_create_of(vxm_png **out, vxm_context *context, vxm_output *output, int width, int height,
                              vxm_png_pixels pixels, vxm_error *error) {
   *out = NULL;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_png *png = vxm_calloc(context, 1, sizeof *png, &local);
-  if (!png) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  vxm_png *png = vxm_try_calloc(context, 1, sizeof *png, &status, error);
+  if (!png)
+    return status;
   png->context = context;
   png->output = output;
   png->row_bytes = (size_t)(pixels.channels * pixels.bits / 8) * (size_t)width;
@@ -100,7 +98,7 @@ vxm_status vxm_png_create_of(vxm_png **out, vxm_context *context, vxm_output *ou
       png_create_write_struct_2(PNG_LIBPNG_VER_STRING, png, on_error, on_warning, png, on_allocate, on_free);
   if (png->writer)
     png->info = png_create_info_struct(png->writer);
-  vxm_status status = png->info ? begin(png, width, height, pixels, error) : fail(png, error);
+  status = png->info ? begin(png, width, height, pixels, error) : fail(png, error);
   if (status != VXM_OK) {
     vxm_png_destroy(png);
     return status;

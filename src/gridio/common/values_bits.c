@@ -307,12 +307,10 @@ vxm_status vxm_field_narrow(vxm_field *field, vxm_scalar scalar, vxm_error *erro
   size_t count = vxm_field_count(field);
   if (scalar == VXM_FLOAT32 || !narrow(NULL, from, count, scalar))
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  unsigned char *values = vxm_alloc(field->context, count, vxm_scalar_bytes(scalar), &local);
-  if (!values) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  unsigned char *values = vxm_try_alloc(field->context, count, vxm_scalar_bytes(scalar), &status, error);
+  if (!values)
+    return status;
   narrow(values, from, count, scalar);
   vxm_free(field->context, field->values);
   field->values = values;

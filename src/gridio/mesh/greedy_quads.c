@@ -186,14 +186,11 @@ vxm_status vxm_greedy_quads_find(vxm_greedy_quads *out, const vxm_grid *grid, vx
   size_t chunks[3] = {grid->row_words, ((size_t)grid->space.dims[1] + LAYERS - 1) / LAYERS,
                       ((size_t)grid->space.dims[2] + LAYERS - 1) / LAYERS};
   *out = (vxm_greedy_quads){.context = grid->context, .list_count = chunks[0] + chunks[1] + chunks[2]};
-  vxm_error local = VXM_ERROR_INIT;
-  out->lists = vxm_calloc(grid->context, out->list_count, sizeof *out->lists, &local);
-  if (!out->lists) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  vxm_greedy_quad_list *lists = out->lists;
   vxm_status status = VXM_OK;
+  out->lists = vxm_try_calloc(grid->context, out->list_count, sizeof *out->lists, &status, error);
+  if (!out->lists)
+    return status;
+  vxm_greedy_quad_list *lists = out->lists;
   for (int axis = 0; status == VXM_OK && axis < 3; lists += chunks[axis++])
     status = find_axis(out, grid, lists, chunks[axis], axis, error);
   if (status != VXM_OK)

@@ -51,12 +51,10 @@ static vxm_status number(vxm_split_vertices *s, vxm_error *error) {
   s->vertex_count = count;
   if (count == lattice)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  s->first = vxm_alloc(s->context, lattice, sizeof *s->first, &local);
-  if (!s->first) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  s->first = vxm_try_alloc(s->context, lattice, sizeof *s->first, &status, error);
+  if (!s->first)
+    return status;
   size_t next = 0, ignored;
   for (size_t v = 0; v < lattice; v++) {
     s->first[v] = (uint32_t)next;
@@ -68,16 +66,14 @@ static vxm_status number(vxm_split_vertices *s, vxm_error *error) {
 vxm_status vxm_split_vertices_find(vxm_split_vertices *out, const vxm_quad_vertices *lattice,
                                    const vxm_grid *grid, vxm_error *error) {
   *out = (vxm_split_vertices){.lattice = lattice, .context = lattice->context};
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   vxm_lattice_fans_fill(&out->fans);
-  out->set = vxm_alloc(out->context, lattice->vertex_count, 1, &local);
-  if (!out->set) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  out->set = vxm_try_alloc(out->context, lattice->vertex_count, 1, &status, error);
+  if (!out->set)
+    return status;
   for (size_t v = 0; v < lattice->vertex_count; v++)
     out->set[v] = (uint8_t)set_about(grid, lattice->points[v]);
-  vxm_status status = number(out, error);
+  status = number(out, error);
   if (status != VXM_OK)
     vxm_split_vertices_destroy(out);
   return status;

@@ -147,18 +147,16 @@ static void close_stream(vxm_pack *pack) {
 
 vxm_status vxm_pack_begin(vxm_pack **out, vxm_context *context, vxm_output *output, const char *id,
                           vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   *out = NULL;
-  vxm_pack *pack = vxm_calloc(context, 1, sizeof *pack, &local);
-  if (!pack) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_pack *pack = vxm_try_calloc(context, 1, sizeof *pack, &status, error);
+  if (!pack)
+    return status;
   pack->context = context;
   pack->output = output;
   pack->error = (vxm_error)VXM_ERROR_INIT;
   vxm_output_printf(output, "<script type=\"application/octet-stream;base64\" id=\"%s\">", id);
-  vxm_status status = open_stream(pack);
+  status = open_stream(pack);
   if (status != VXM_OK) {
     vxm_error_pass(error, &pack->error);
     vxm_free(context, pack);

@@ -145,14 +145,12 @@ static json_t *legend_line(const vxm_field *field, const legend *l, int number) 
 }
 
 static vxm_status put_labels(vxm_page *page, const rows *r, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  legend *l = vxm_calloc(page->context, 1, sizeof *l, &local);
-  if (!l) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  legend *l = vxm_try_calloc(page->context, 1, sizeof *l, &status, error);
+  if (!l)
+    return status;
   find_labels(l, r);
-  vxm_status status = put_rows(page, r, encode_labels, &l, 1, error);
+  status = put_rows(page, r, encode_labels, &l, 1, error);
   json_t *lines = json_array();
   int64_t count = 0;
   for (int number = 1; number <= OTHERS; number++)

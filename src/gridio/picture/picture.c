@@ -82,14 +82,12 @@ static vxm_status find_outline(outline *o, const vxm_scene *scene, const box *li
   while (level + 1 < mips->levels && mips->level[level].dims[1] * mips->level[level].dims[2] > 1024)
     level++;
   const int64_t *dims = mips->level[level].dims;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   size_t most = 16 * (size_t)(dims[1] * dims[2]);
   o->count = 0;
-  o->points = vxm_alloc(scene->grid->context, most, sizeof *o->points, &local);
-  if (!o->points) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  o->points = vxm_try_alloc(scene->grid->context, most, sizeof *o->points, &status, error);
+  if (!o->points)
+    return status;
   int64_t side = INT64_C(4) << level;
   for (int64_t row = 0; row < dims[1] * dims[2]; row++) {
     const uint8_t *cells = mips->level[level].cells + row * dims[0];

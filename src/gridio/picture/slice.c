@@ -159,15 +159,13 @@ static void draw_row(unsigned char *row, const slice *s, int y) {
 }
 
 static vxm_status draw(const slice *s, vxm_context *context, const char *path, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   vxm_output *output;
   vxm_png *png = NULL;
-  unsigned char *row = vxm_alloc(context, (size_t)s->width, 3, &local);
-  if (!row) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  vxm_status status = vxm_output_open(&output, context, path, error);
+  unsigned char *row = vxm_try_alloc(context, (size_t)s->width, 3, &status, error);
+  if (!row)
+    return status;
+  status = vxm_output_open(&output, context, path, error);
   if (status == VXM_OK) {
     status = vxm_png_create(&png, context, output, s->width, s->height, error);
     for (int y = 0; status == VXM_OK && y < s->height; y++) {

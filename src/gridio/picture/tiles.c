@@ -67,12 +67,10 @@ vxm_status vxm_tiles_create(vxm_tiles *out, const vxm_scene *scene, const vxm_ca
                      .width = cam->width / VXM_PICTURE_TILE + 1,
                      .height = cam->height / VXM_PICTURE_TILE + 1};
   size_t count = (size_t)out->width * (size_t)out->height;
-  vxm_error local = VXM_ERROR_INIT;
-  out->depth = vxm_alloc(out->context, count, sizeof *out->depth, &local);
-  if (!out->depth) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  out->depth = vxm_try_alloc(out->context, count, sizeof *out->depth, &status, error);
+  if (!out->depth)
+    return status;
   for (size_t i = 0; i < count; i++)
     out->depth[i] = INFINITY;
   int level = choose_level(&scene->mips);

@@ -19,12 +19,10 @@ static int by_name(const void *a, const void *b) {
 
 vxm_status vxm_part_names_number(uint32_t *numbers, vxm_context *context, const char *const *names,
                                  size_t count, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  occurrence *all = vxm_alloc(context, count, sizeof *all, &local);
-  if (!all) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  occurrence *all = vxm_try_alloc(context, count, sizeof *all, &status, error);
+  if (!all)
+    return status;
   for (size_t i = 0; i < count; i++)
     all[i] = (occurrence){names[i], i};
   qsort(all, count, sizeof *all, by_name);

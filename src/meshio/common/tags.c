@@ -116,13 +116,11 @@ static uint64_t hash_name(const char *name, size_t length) {
 
 static vxm_status grow_slots(vxm_tagger *tagger, vxm_error *error) {
   vxm_soup *soup = tagger->soup;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   size_t count = tagger->slot_count ? tagger->slot_count * 2 : 64;
-  uint32_t *slots = vxm_calloc(soup->context, count, sizeof *slots, &local);
-  if (!slots) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  uint32_t *slots = vxm_try_calloc(soup->context, count, sizeof *slots, &status, error);
+  if (!slots)
+    return status;
   for (size_t t = 0; t < soup->tag_count; t++) {
     size_t slot = (size_t)hash_name(soup->tags[t], strlen(soup->tags[t])) & (count - 1);
     while (slots[slot])

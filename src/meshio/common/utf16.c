@@ -50,14 +50,12 @@ static size_t put(unsigned char *out, uint32_t c) {
 
 vxm_status vxm_utf16_to_utf8(unsigned char **out, size_t *out_size, vxm_context *context,
                              const unsigned char *data, size_t size, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   bool big = data[0] == 0xfe;
   /* A unit of two bytes becomes at most three; a pair of four bytes becomes four. */
-  unsigned char *text = vxm_alloc(context, size / 2, 3, &local);
-  if (!text) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  unsigned char *text = vxm_try_alloc(context, size / 2, 3, &status, error);
+  if (!text)
+    return status;
   size_t used = 0;
   for (size_t at = 2; at + 2 <= size; at += 2) {
     uint32_t c = unit(data + at, big);

@@ -284,12 +284,10 @@ static void drop_beyond(obj_reader *reader) {
 /** Vertices that no face uses, and how many of them are the last ones. */
 static vxm_status count_unused(const vxm_soup *soup, size_t *unused, size_t *last, vxm_error *error) {
   size_t words = soup->vertex_count / 64 + 1;
-  vxm_error local = VXM_ERROR_INIT;
-  uint64_t *used = vxm_calloc(soup->context, words, sizeof *used, &local);
-  if (!used) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  uint64_t *used = vxm_try_calloc(soup->context, words, sizeof *used, &status, error);
+  if (!used)
+    return status;
   for (size_t c = 0; c < soup->corner_count; c++)
     used[soup->indices[c] / 64] |= UINT64_C(1) << soup->indices[c] % 64;
   *unused = soup->vertex_count;

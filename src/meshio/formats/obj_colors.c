@@ -105,15 +105,13 @@ vxm_status vxm_obj_colors_library(vxm_soup *soup, const unsigned char *names, si
 
 vxm_status vxm_obj_colors_finish(vxm_obj_colors *colors, vxm_soup *soup, vxm_error *error) {
   vxm_appearance *appearance = soup->appearance;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   if (colors->uv_count == 0 || soup->corner_count == 0)
     return VXM_OK;
   appearance->corner_uvs =
-      vxm_alloc(soup->context, soup->corner_count, sizeof *appearance->corner_uvs, &local);
-  if (!appearance->corner_uvs) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+      vxm_try_alloc(soup->context, soup->corner_count, sizeof *appearance->corner_uvs, &status, error);
+  if (!appearance->corner_uvs)
+    return status;
   appearance->corner_uv_count = soup->corner_count;
   for (size_t c = 0; c < soup->corner_count; c++) {
     uint32_t index = colors->corner_uvs[c];

@@ -14,7 +14,7 @@
 /** Takes a picture within the file: its bytes as they stand there, or pixels that are decoded by now. */
 static vxm_status take_embedded(vxm_image *image, vxm_context *context, const struct aiTexture *texture,
                                 vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   bool is_file = texture->mHeight == 0;
   uint64_t pixels = is_file ? 0 : (uint64_t)texture->mWidth * texture->mHeight;
   if (!texture->pcData || texture->mWidth == 0 || pixels > VXM_PIXELS_MAX) {
@@ -22,11 +22,9 @@ static vxm_status take_embedded(vxm_image *image, vxm_context *context, const st
     return VXM_OK;
   }
   image->size = is_file ? texture->mWidth : 4 * pixels;
-  image->bytes = vxm_alloc(context, (size_t)image->size, 1, &local);
-  if (!image->bytes) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  image->bytes = vxm_try_alloc(context, (size_t)image->size, 1, &status, error);
+  if (!image->bytes)
+    return status;
   if (is_file)
     memcpy(image->bytes, texture->pcData, (size_t)image->size);
   for (uint64_t p = 0; p < pixels; p++) {

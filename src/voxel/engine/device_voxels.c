@@ -35,12 +35,10 @@ static void delete_shared(struct DLManagedTensor *managed) {
 vxm_status vxm_device_voxels_share(struct DLManagedTensor **out, vxm_device_voxels *voxels,
                                    vxm_error *error) {
   const vxm_device_info *info = &voxels->info;
-  vxm_error local = VXM_ERROR_INIT;
-  shared *made = vxm_calloc(voxels->context, 1, sizeof *made, &local);
-  if (!made) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  shared *made = vxm_try_calloc(voxels->context, 1, sizeof *made, &status, error);
+  if (!made)
+    return status;
   bool is_packed = info->format == VXM_VOXEL_FORMAT_PACKED;
   int64_t element = is_packed ? 1 : (int64_t)vxm_voxel_format_bytes(info->format);
   made->shape[0] = info->count;

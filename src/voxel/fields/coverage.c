@@ -161,15 +161,13 @@ static int64_t slices_by_parity(const vxm_field_plan *plan, const vxm_model_pass
 static vxm_status reduce_window(reduction *r, vxm_window *fine, const vxm_field_plan *plan,
                                 vxm_model_pass *pass, vxm_error *error) {
   vxm_context *context = pass->solid.context;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   if (!fine->words)
-    fine->words =
-        vxm_alloc(context, (size_t)(plan->slices * r->n) * fine->slice_words, sizeof *fine->words, &local);
-  if (!fine->words) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  vxm_status status = vxm_model_pass_fill(pass, fine, error);
+    fine->words = vxm_try_alloc(context, (size_t)(plan->slices * r->n) * fine->slice_words,
+                                sizeof *fine->words, &status, error);
+  if (!fine->words)
+    return status;
+  status = vxm_model_pass_fill(pass, fine, error);
   if (status == VXM_OK)
     status = count_elsewhere(r, pass->solid.engine, fine, error);
   if (status == VXM_OK)

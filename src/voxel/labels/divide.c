@@ -20,12 +20,10 @@ static size_t number_sets(uint32_t *sets, const vxm_face_labels *labelling, cons
 
 static vxm_status divide(vxm_soup *soup, const vxm_face_labels *labelling, const uint8_t *open,
                          vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  uint32_t *sets = vxm_calloc(soup->context, soup->face_count, sizeof *sets, &local);
-  if (!sets) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  uint32_t *sets = vxm_try_calloc(soup->context, soup->face_count, sizeof *sets, &status, error);
+  if (!sets)
+    return status;
   size_t count = number_sets(sets, labelling, open);
   if (count == 1) {
     vxm_free(soup->context, sets);

@@ -12,14 +12,12 @@ static vxm_status fill_model(vxm_model *model, const vxm_soup *soup, vxm_error *
 
 vxm_status vxm_model_make(vxm_model **out, const vxm_soup *soup, const vxm_voxelize_options *options,
                           vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_model *model = vxm_calloc(soup->context, 1, sizeof *model, &local);
+  vxm_status status = VXM_OK;
+  vxm_model *model = vxm_try_calloc(soup->context, 1, sizeof *model, &status, error);
   *out = NULL;
-  if (!model) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  vxm_status status = vxm_context_acquire(&model->context, soup->context, error);
+  if (!model)
+    return status;
+  status = vxm_context_acquire(&model->context, soup->context, error);
   pthread_mutex_init(&model->mutex, NULL);
   model->options = *options;
   if (status == VXM_OK)
@@ -64,14 +62,12 @@ static vxm_model_pass *take_idle(vxm_model *model) {
 }
 
 static vxm_status make_pass(vxm_model_pass **out, vxm_model *model, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_model_pass *pass = vxm_alloc(model->context, 1, sizeof *pass, &local);
-  if (!pass) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  vxm_model_pass *pass = vxm_try_alloc(model->context, 1, sizeof *pass, &status, error);
+  if (!pass)
+    return status;
   vxm_model_pass_start(pass, model->context);
-  vxm_status status = vxm_model_pass_attach(pass, &model->analysis, &model->options, error);
+  status = vxm_model_pass_attach(pass, &model->analysis, &model->options, error);
   if (status == VXM_OK)
     *out = pass;
   else

@@ -17,12 +17,10 @@ static const void *this_thread(void) {
 }
 
 vxm_status vxm_model_results_create(vxm_model_results **out, vxm_context *context, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  *out = vxm_calloc(context, 1, sizeof **out, &local);
-  if (!*out) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  *out = vxm_try_calloc(context, 1, sizeof **out, &status, error);
+  if (!*out)
+    return status;
   (*out)->context = context;
   pthread_mutex_init(&(*out)->mutex, NULL);
   return VXM_OK;

@@ -298,13 +298,11 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
                                 job->part + 1, error);
   if (status != VXM_OK)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
-  state.carries =
-      vxm_alloc(context, (state.stripes + 1) * window->slice_words, sizeof *state.carries, &local);
+  state.carries = vxm_try_alloc(context, (state.stripes + 1) * window->slice_words, sizeof *state.carries,
+                                &status, error);
   if (!state.carries) {
     vxm_odd_lines_destroy(&state.odd);
-    vxm_error_pass(error, &local);
-    return local.code;
+    return status;
   }
   size_t edge_tasks = (state.edge_end - state.edge_begin + EDGES_PER_TASK - 1) / EDGES_PER_TASK;
   vxm_task_progress_start(&state.progress, context, "voxelizing along x, y, z",

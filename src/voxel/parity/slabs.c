@@ -19,13 +19,11 @@ void vxm_workspace_destroy(vxm_workspace *workspace) {
 vxm_status vxm_workspace_scratch(vxm_workspace *workspace, size_t words, vxm_error *error) {
   if (words <= workspace->scratch_words)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   vxm_free(workspace->context, workspace->scratch);
-  workspace->scratch = vxm_calloc(workspace->context, words, sizeof *workspace->scratch, &local);
+  workspace->scratch = vxm_try_calloc(workspace->context, words, sizeof *workspace->scratch, &status, error);
   workspace->scratch_words = workspace->scratch ? words : 0;
-  if (!workspace->scratch)
-    vxm_error_pass(error, &local);
-  return local.code;
+  return status;
 }
 
 vxm_slabs vxm_slabs_of(int64_t layers, size_t layer_words, int threads) {

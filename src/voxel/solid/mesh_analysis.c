@@ -20,15 +20,13 @@ vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup
                              .soup = soup,
                              .triangles = {.context = context},
                              .self_overlap.chain.context = context};
-  vxm_error local = VXM_ERROR_INIT;
-  out->orientation = vxm_calloc(context, 1, sizeof *out->orientation, &local);
-  if (!out->orientation) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  out->orientation = vxm_try_calloc(context, 1, sizeof *out->orientation, &status, error);
+  if (!out->orientation)
+    return status;
   chain_once_begin(&out->orientation->open, context);
   chain_once_begin(&out->orientation->all, context);
-  vxm_status status = vxm_triangle_set_create(&out->triangles, soup, rule, error);
+  status = vxm_triangle_set_create(&out->triangles, soup, rule, error);
   if (status != VXM_OK)
     return status;
   if (out->triangles.triangle_count == 0)

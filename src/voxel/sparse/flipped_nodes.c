@@ -11,18 +11,16 @@ uint64_t vxm_flipped_nodes_bytes(size_t strips, int row_shift) {
 
 vxm_status vxm_flipped_nodes_create(vxm_flipped_nodes *out, vxm_context *context, size_t strips,
                                     int row_shift, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   *out = (vxm_flipped_nodes){.context = context, .row_shift = row_shift};
-  out->slots = vxm_calloc(context, strips << (row_shift - 4), sizeof *out->slots, &local);
-  out->touched = out->slots ? vxm_calloc(context, strips, sizeof *out->touched, &local) : NULL;
+  out->slots = vxm_try_calloc(context, strips << (row_shift - 4), sizeof *out->slots, &status, error);
+  out->touched = out->slots ? vxm_try_calloc(context, strips, sizeof *out->touched, &status, error) : NULL;
   for (unsigned i = 0; i < 256; i++) {
     unsigned y = i >> 4, z = i & 15;
     out->places[i].row = (uint8_t)((y >> 2 & 1) | (z >> 1 & 2) | (y >> 1 & 4) | (z & 8));
     out->places[i].shift = (uint8_t)(16 * (z & 3) + 4 * (y & 3));
   }
-  if (local.code != VXM_OK)
-    vxm_error_pass(error, &local);
-  return local.code;
+  return status;
 }
 
 void vxm_flipped_nodes_destroy(vxm_flipped_nodes *nodes) {

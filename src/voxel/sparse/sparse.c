@@ -237,13 +237,11 @@ static vxm_status add_windows(vxm_octree_builder *builder, const vxm_model *mode
   vxm_layout layout = VXM_LAYOUT_GRID;
   vxm_window window = vxm_window_of(&pass->space, layout, 0, 0);
   int64_t slices = vxm_min(range_slices(model, &pass->space, &window), window.slow_dim);
-  vxm_error local = VXM_ERROR_INIT;
-  window.words = vxm_alloc(model->context, (size_t)slices * window.slice_words, sizeof *window.words, &local);
-  if (!window.words) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
   vxm_status status = VXM_OK;
+  window.words = vxm_try_alloc(model->context, (size_t)slices * window.slice_words, sizeof *window.words,
+                               &status, error);
+  if (!window.words)
+    return status;
   for (int64_t begin = 0; begin < window.slow_dim && status == VXM_OK; begin += slices) {
     window.begin = begin;
     window.end = vxm_min(begin + slices, window.slow_dim);

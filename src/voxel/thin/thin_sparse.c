@@ -65,18 +65,16 @@ static vxm_status unite_others(vxm_sparse **octree, const uint64_t *keys, size_t
 /** Puts voxels to an octree. Most lie in bricks that have a place there: so few are united with it, and these
  * first, for which memory may not suffice. */
 static vxm_status add_voxels(vxm_sparse **octree, const vxm_voxel_set *set, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  uint64_t *keys = vxm_alloc(set->context, 2 * set->count, sizeof *keys, &local);
-  if (!keys) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  uint64_t *keys = vxm_try_alloc(set->context, 2 * set->count, sizeof *keys, &status, error);
+  if (!keys)
+    return status;
   size_t count = 0;
   for (size_t s = 0; s < set->size; s++)
     if (set->slots[s])
       keys[count++] = key_of(set->slots[s] - 1);
   vxm_sort_keys(keys, keys + count, count);
-  vxm_status status = unite_others(octree, keys, count, error);
+  status = unite_others(octree, keys, count, error);
   brick b;
   for (size_t k = 0; k < count && status == VXM_OK;) {
     k = take_brick(&b, keys, count, k);

@@ -17,12 +17,10 @@ static vxm_status grow(vxm_voxel_set *set, vxm_error *error) {
   const size_t least = 1024;
   vxm_voxel_set larger = {
       .context = set->context, .size = set->size ? 2 * set->size : least, .count = set->count};
-  vxm_error local = VXM_ERROR_INIT;
-  larger.slots = vxm_calloc(set->context, larger.size, sizeof *larger.slots, &local);
-  if (!larger.slots) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  larger.slots = vxm_try_calloc(set->context, larger.size, sizeof *larger.slots, &status, error);
+  if (!larger.slots)
+    return status;
   for (size_t s = 0; s < set->size; s++)
     if (set->slots[s])
       larger.slots[slot_of(&larger, set->slots[s] - 1)] = set->slots[s];

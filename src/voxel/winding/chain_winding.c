@@ -237,13 +237,10 @@ static vxm_status reserve(vxm_chain_winding *out, bool in_place, size_t slab_wor
                        error);
   if (status != VXM_OK || slabs <= out->slab_capacity)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
   vxm_free(out->context, out->slabs);
-  out->slabs = vxm_calloc(out->context, slabs, sizeof *out->slabs, &local);
+  out->slabs = vxm_try_calloc(out->context, slabs, sizeof *out->slabs, &status, error);
   out->slab_capacity = out->slabs ? slabs : 0;
-  if (!out->slabs)
-    vxm_error_pass(error, &local);
-  return local.code;
+  return status;
 }
 
 /** Triangles whose crossings are put into bins. */

@@ -215,12 +215,9 @@ vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, co
   vxm_context *context = mesh->context;
   size_t workers = (size_t)vxm_context_threads(context);
   job.lists = (vxm_winding_scratch){.context = context, .error = VXM_ERROR_INIT};
-  vxm_error local = VXM_ERROR_INIT;
-  job.scratch = vxm_calloc(context, workers, sizeof *job.scratch, &local);
-  if (!job.scratch) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  job.scratch = vxm_try_calloc(context, workers, sizeof *job.scratch, &status, error);
+  if (!job.scratch)
+    return status;
   for (size_t w = 0; w < workers; w++)
     job.scratch[w] = (vxm_winding_scratch){.context = context, .error = VXM_ERROR_INIT};
   if (mesh->tree.count > 0 || confidence)

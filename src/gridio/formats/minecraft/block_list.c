@@ -51,12 +51,10 @@ static vxm_status append(vxm_block_list *list, const char *name, size_t size, vx
 /** At least half of the slots stay free. */
 static vxm_status grow_table(vxm_block_list *list, vxm_error *error) {
   size_t slots = list->slots > 0 ? 4 * list->slots : 256;
-  vxm_error local = VXM_ERROR_INIT;
-  uint32_t *table = vxm_calloc(list->context, slots, sizeof *table, &local);
-  if (!table) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+  vxm_status status = VXM_OK;
+  uint32_t *table = vxm_try_calloc(list->context, slots, sizeof *table, &status, error);
+  if (!table)
+    return status;
   vxm_free(list->context, list->table);
   list->table = table;
   list->slots = slots;

@@ -14,17 +14,15 @@ static const uint64_t blocks_most = UINT64_C(1) << 30;
 vxm_status vxm_block_file_make(vxm_block_file *file, const vxm_input *input, bool wants_ids,
                                vxm_error *error) {
   const vxm_space space = {{file->size[0], file->size[1], file->size[2]}, {0, 0, 0}, {1, 1, 1}};
-  vxm_error local = VXM_ERROR_INIT;
   vxm_status status = vxm_space_check_file(&space, input, 0, error);
   if (status == VXM_OK && vxm_space_voxels(&space) > blocks_most)
     status = vxm_fail_at(error, VXM_ERROR_RANGE, (vxm_place){input->name, 0, -1, -1},
                          "the regions stand so far apart that a grid of all has more than 2^30 blocks");
   if (status != VXM_OK || !wants_ids)
     return status;
-  file->ids = vxm_calloc(file->context, (size_t)vxm_space_voxels(&space), sizeof *file->ids, &local);
-  if (!file->ids)
-    vxm_error_pass(error, &local);
-  return local.code;
+  file->ids =
+      vxm_try_calloc(file->context, (size_t)vxm_space_voxels(&space), sizeof *file->ids, &status, error);
+  return status;
 }
 
 void vxm_block_file_destroy(vxm_block_file *file) {

@@ -134,14 +134,12 @@ bool vxm_nbt_sniff(const vxm_input *input) {
 
 /** Some programs leave their trees unpacked. */
 static vxm_status copy(vxm_nbt *tree, size_t *size, const vxm_input *input, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  tree->bytes = vxm_alloc(tree->context, input->size, 1, &local);
+  vxm_status status = VXM_OK;
+  tree->bytes = vxm_try_alloc(tree->context, input->size, 1, &status, error);
   if (tree->bytes)
     memcpy(tree->bytes, input->data, input->size);
-  else
-    vxm_error_pass(error, &local);
   *size = input->size;
-  return local.code;
+  return status;
 }
 
 vxm_status vxm_nbt_load(vxm_nbt *out, const vxm_input *input, vxm_error *error) {

@@ -23,19 +23,17 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
 /** Keeps a slice, and encodes those that are kept once they make a strip. */
 static vxm_status keep(vxm_values_writer *w, const unsigned char *slice, vxm_error *error) {
   state *s = w->state;
-  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
   if (!s->kept)
-    s->kept =
-        vxm_alloc(w->context, (size_t)vxm_min(VXM_STRIP_VOXELS, w->space.dims[2]), w->slice_bytes, &local);
-  if (!s->kept) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
+    s->kept = vxm_try_alloc(w->context, (size_t)vxm_min(VXM_STRIP_VOXELS, w->space.dims[2]), w->slice_bytes,
+                            &status, error);
+  if (!s->kept)
+    return status;
   memcpy(s->kept + (size_t)(s->end - s->begin) * w->slice_bytes, slice, w->slice_bytes);
   s->end++;
   if (s->end % VXM_STRIP_VOXELS != 0 && s->end != w->space.dims[2])
     return VXM_OK;
-  vxm_status status = vxm_octree_encoder_put(s->encoder, s->kept, s->begin, s->end, error);
+  status = vxm_octree_encoder_put(s->encoder, s->kept, s->begin, s->end, error);
   s->begin = s->end;
   return status;
 }
