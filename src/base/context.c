@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/context.h"
+#include "base/c_locale.h"
 #include "base/context_struct.h"
 #include "base/sized.h"
 
@@ -29,7 +30,7 @@ vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *opti
   if (chosen.threads < 0 || chosen.threads > VXM_THREADS_MAX)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "context: %d threads; choose 0 (all processors) to %d",
                     chosen.threads, VXM_THREADS_MAX);
-  vxm_context *context = calloc(1, sizeof *context);
+  vxm_context *context = vxm_c_locale() ? calloc(1, sizeof *context) : NULL;
   if (!context)
     return vxm_fail(error, VXM_ERROR_MEMORY, "context: out of memory");
   atomic_init(&context->references, 1);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/number.h"
+#include "base/c_locale.h"
 
 #include "base/bits.h"
 
@@ -155,7 +156,7 @@ static const unsigned char *read_digits(const unsigned char *p, const unsigned c
 }
 
 /** The slow way for what 128 bits cannot settle: all significant digits, through the C library. */
-static double parse_long(const unsigned char *text, size_t length, int64_t exponent, locale_t c_locale) {
+static double parse_long(const unsigned char *text, size_t length, int64_t exponent) {
   char buffer[DIGITS_KEPT + 40];
   size_t used = 0;
   bool sticky = false, point = false;
@@ -187,10 +188,10 @@ static double parse_long(const unsigned char *text, size_t length, int64_t expon
   if (exponent < -99999)
     exponent = -99999;
   snprintf(buffer + used, sizeof buffer - used, "e%d", (int)exponent);
-  return strtod_l(buffer, NULL, c_locale);
+  return strtod_l(buffer, NULL, vxm_c_locale());
 }
 
-bool vxm_number_parse(const unsigned char *text, size_t length, locale_t c_locale, double *value) {
+bool vxm_number_parse(const unsigned char *text, size_t length, double *value) {
   const unsigned char *p = text, *end = text + length;
   bool negative = p < end && *p == '-';
   if (p < end && (*p == '-' || *p == '+'))
@@ -232,7 +233,7 @@ bool vxm_number_parse(const unsigned char *text, size_t length, locale_t c_local
   bool settled = d.w == 0 || (e >= -400 && e <= 400 && vxm_decimal(d.w, (int)e, &result) &&
                               (!d.more || (vxm_decimal(d.w + 1, (int)e, &above) && above == result)));
   if (!settled)
-    result = parse_long(first, (size_t)(end - first), exponent, c_locale);
+    result = parse_long(first, (size_t)(end - first), exponent);
   *value = negative ? -result : result;
   return true;
 }
@@ -310,12 +311,12 @@ static size_t write_moderate(char *text, double value, int least, int most, bool
   return 0;
 }
 
-static size_t write_any(char *text, double value, int least, int most, bool is_float, locale_t c_locale) {
-  locale_t before = uselocale(c_locale);
+static size_t write_any(char *text, double value, int least, int most, bool is_float) {
+  locale_t before = uselocale(vxm_c_locale());
   int length = 0;
   for (int digits = least; digits <= most; digits++) {
     length = snprintf(text, VXM_NUMBER_ROOM, "%.*g", digits, value);
-    double back = strtod_l(text, NULL, c_locale);
+    double back = strtod(text, NULL);
     if (is_float ? (float)back == (float)value : back == value)
       break;
   }
@@ -323,7 +324,7 @@ static size_t write_any(char *text, double value, int least, int most, bool is_f
   return length > 0 ? (size_t)length : 0;
 }
 
-static size_t write_value(char *text, double value, int least, int most, bool is_float, locale_t c_locale) {
+static size_t write_value(char *text, double value, int least, int most, bool is_float) {
   size_t used = 0;
   if (signbit(value)) {
     text[used++] = '-';
@@ -340,16 +341,16 @@ static size_t write_value(char *text, double value, int least, int most, bool is
     length = write_moderate(text + used, value, least, most, is_float);
   if (length == 0) {
     char room[VXM_NUMBER_ROOM];
-    length = write_any(room, value, least, most, is_float, c_locale);
+    length = write_any(room, value, least, most, is_float);
     memcpy(text + used, room, length);
   }
   return used + length;
 }
 
-size_t vxm_number_write(char text[VXM_NUMBER_ROOM], double value, locale_t c_locale) {
-  return write_value(text, value, DBL_DIG, DBL_DECIMAL_DIG, false, c_locale);
+size_t vxm_number_write(char text[VXM_NUMBER_ROOM], double value) {
+  return write_value(text, value, DBL_DIG, DBL_DECIMAL_DIG, false);
 }
 
-size_t vxm_number_write_float(char text[VXM_NUMBER_ROOM], float value, locale_t c_locale) {
-  return write_value(text, (double)value, FLT_DIG, FLT_DECIMAL_DIG, true, c_locale);
+size_t vxm_number_write_float(char text[VXM_NUMBER_ROOM], float value) {
+  return write_value(text, (double)value, FLT_DIG, FLT_DECIMAL_DIG, true);
 }

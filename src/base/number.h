@@ -3,7 +3,6 @@
 #ifndef VXM_BASE_NUMBER_H
 #define VXM_BASE_NUMBER_H
 
-#include <locale.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,14 +22,14 @@ bool vxm_decimal(uint64_t w, int e, double *value);
  * Reads the number that text[0..length) consists of: sign, digits with an optional point, exponent by e, E, d
  * or D; nan, inf and infinity in any case. False if anything else is there.
  */
-bool vxm_number_parse(const unsigned char *text, size_t length, locale_t c_locale, double *value);
+bool vxm_number_parse(const unsigned char *text, size_t length, double *value);
 
 enum { VXM_NUMBER_ROOM = 40 };
 
 /** Writes the shortest of 15 to 17 digits that read back bit for bit; returns the length. */
-size_t vxm_number_write(char text[VXM_NUMBER_ROOM], double value, locale_t c_locale);
+size_t vxm_number_write(char text[VXM_NUMBER_ROOM], double value);
 /** As vxm_number_write, for a float (6 to 9 digits). */
-size_t vxm_number_write_float(char text[VXM_NUMBER_ROOM], float value, locale_t c_locale);
+size_t vxm_number_write_float(char text[VXM_NUMBER_ROOM], float value);
 /** Decimal digits of an integer; returns the length (at most 20). */
 size_t vxm_number_write_uint(char text[VXM_NUMBER_ROOM], uint64_t value);
 

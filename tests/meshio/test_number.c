@@ -2,11 +2,10 @@
 /** Numbers: against strtod on random and hard cases, and written numbers read back. */
 #include "meshio_test.h"
 
+#include "base/c_locale.h"
 #include "meshio/common/tokenizer.h"
 
 #include <locale.h>
-
-static locale_t c_locale;
 
 /** The number as the readers see it: through the fast path where `padding` leaves room for it. */
 static bool scan_number(const char *text, size_t padding, double *value) {
@@ -15,7 +14,7 @@ static bool scan_number(const char *text, size_t padding, double *value) {
   assert_non_null(copy);
   memcpy(copy, text, length);
   memset(copy + length, ' ', padding);
-  vxm_tokenizer scan = {.begin = copy, .at = copy, .end = copy + length + padding, .c_locale = c_locale};
+  vxm_tokenizer scan = {.begin = copy, .at = copy, .end = copy + length + padding};
   bool good = vxm_tokenizer_double(&scan, value);
   assert_int_equal(scan.at - copy, good ? length : 0);
   free(copy);
@@ -33,7 +32,7 @@ static void expect_number(const char *text, double expected) {
 }
 
 static void expect_as_strtod(const char *text) {
-  expect_number(text, strtod_l(text, NULL, c_locale));
+  expect_number(text, strtod_l(text, NULL, vxm_c_locale()));
 }
 
 static void test_random_decimals(void **state) {
@@ -233,16 +232,16 @@ static void test_whole_numbers(void **state) {
 
 static void expect_written(double value) {
   char text[VXM_NUMBER_ROOM + 1], shortest[64];
-  size_t length = vxm_number_write(text, value, c_locale);
+  size_t length = vxm_number_write(text, value);
   assert_true(length < VXM_NUMBER_ROOM);
   text[length] = '\0';
-  double back = strtod_l(text, NULL, c_locale);
+  double back = strtod_l(text, NULL, vxm_c_locale());
   if (double_to_bits(back) != double_to_bits(value))
     fail_msg("%a is written as \"%s\"", value, text);
   /* No shorter in digits than the C library needs. */
   for (int digits = 15; digits <= 17; digits++) {
     snprintf(shortest, sizeof shortest, "%.*g", digits, value);
-    if (strtod_l(shortest, NULL, c_locale) == value)
+    if (strtod_l(shortest, NULL, vxm_c_locale()) == value)
       break;
   }
   size_t ours = 0, theirs = 0;
@@ -283,13 +282,13 @@ static void test_written_numbers(void **state) {
   for (size_t i = 0; i < sizeof values / sizeof *values; i++)
     expect_written(values[i]);
   char text[VXM_NUMBER_ROOM];
-  assert_int_equal(vxm_number_write(text, 0.1, c_locale), 3);
+  assert_int_equal(vxm_number_write(text, 0.1), 3);
   assert_memory_equal(text, "0.1", 3);
-  assert_int_equal(vxm_number_write(text, -25.0, c_locale), 3);
+  assert_int_equal(vxm_number_write(text, -25.0), 3);
   assert_memory_equal(text, "-25", 3);
-  assert_int_equal(vxm_number_write(text, (double)NAN, c_locale), 3);
+  assert_int_equal(vxm_number_write(text, (double)NAN), 3);
   assert_memory_equal(text, "nan", 3);
-  assert_int_equal(vxm_number_write(text, -HUGE_VAL, c_locale), 4);
+  assert_int_equal(vxm_number_write(text, -HUGE_VAL), 4);
   assert_memory_equal(text, "-inf", 4);
 }
 
@@ -301,12 +300,12 @@ static void test_written_floats(void **state) {
     if (!isfinite(value))
       continue;
     char text[VXM_NUMBER_ROOM + 1];
-    size_t length = vxm_number_write_float(text, value, c_locale);
+    size_t length = vxm_number_write_float(text, value);
     text[length] = '\0';
-    float back = strtof_l(text, NULL, c_locale);
+    float back = strtof_l(text, NULL, vxm_c_locale());
     if (memcmp(&back, &value, sizeof value) != 0)
       fail_msg("%a is written as \"%s\"", (double)value, text);
-    assert_true((float)strtod_l(text, NULL, c_locale) == value);
+    assert_true((float)strtod_l(text, NULL, vxm_c_locale()) == value);
   }
 }
 
@@ -322,7 +321,7 @@ static void test_locale(void **state) {
   expect_number("0.5", 0.5);
   expect_number("0.1000000000000000055511151231257827021181583404541015625000001", 0.1);
   char text[VXM_NUMBER_ROOM];
-  assert_int_equal(vxm_number_write(text, 0x1p-70, c_locale), strlen("8.470329472543003e-22"));
+  assert_int_equal(vxm_number_write(text, 0x1p-70), strlen("8.470329472543003e-22"));
   assert_memory_equal(text, "8.470329472543003e-22", strlen("8.470329472543003e-22"));
   setlocale(LC_ALL, "C");
 }
@@ -334,8 +333,5 @@ int main(void) {
       cmocka_unit_test(test_no_numbers),      cmocka_unit_test(test_very_long_numbers),
       cmocka_unit_test(test_whole_numbers),   cmocka_unit_test(test_written_numbers),
       cmocka_unit_test(test_written_floats),  cmocka_unit_test(test_locale)};
-  c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  freelocale(c_locale);
-  return failed;
+  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* .binvox: a text header, then pairs (value, count) over voxels with y fastest, then z, then x. */
 #include "gridio/formats/binvox.h"
+#include "base/c_locale.h"
 #include "base/size_text.h"
 #include "grid/bit_transpose.h"
 #include "gridio/common/format.h"
@@ -8,7 +9,6 @@
 
 #include <errno.h>
 #include <inttypes.h>
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,12 +56,8 @@ static bool parse_integer(const char *word, int64_t *value) {
 
 /** A number with a decimal point whatever the locale. */
 static bool parse_number(const char *word, double *value) {
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return false;
   char *end;
-  *value = strtod_l(word, &end, c);
-  freelocale(c);
+  *value = strtod_l(word, &end, vxm_c_locale());
   return end != word && *end == '\0' && isfinite(*value);
 }
 
@@ -389,29 +385,25 @@ static size_t state_bytes(const vxm_space *space) {
   return vxm_rle_encoder_bytes(&shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
 }
 
-vxm_status vxm_binvox_header_write(vxm_output *output, const vxm_space *space, int version,
-                                   vxm_error *error) {
+void vxm_binvox_header_write(vxm_output *output, const vxm_space *space, int version) {
   uint64_t side = vxm_binvox_side(space);
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   vxm_output_printf(output,
                     "#binvox %d\ndim %" PRIu64 " %" PRIu64 " %" PRIu64 "\ntranslate %.9g %.9g %.9g\n"
                     "scale %.9g\ndata\n",
                     version, side, side, side, space->origin[0], space->origin[1], space->origin[2],
                     space->voxel_size[0] * (double)side);
   uselocale(previous);
-  freelocale(c);
-  return VXM_OK;
 }
 
 static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
+  (void)error;
   const vxm_space *space = &writer->space;
   vxm_rle_shape shape = shape_of(space);
   writer->length = (int64_t)vxm_binvox_side(space);
   vxm_rle_encoder_begin(writer->state, &shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
-  return vxm_binvox_header_write(writer->output, space, 1, error);
+  vxm_binvox_header_write(writer->output, space, 1);
+  return VXM_OK;
 }
 
 /** Writes a run, however long. */

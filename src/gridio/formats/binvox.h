@@ -13,7 +13,7 @@ vxm_status vxm_binvox_check(const vxm_space *space, const char *path, vxm_error 
 /** What a file has at least, without the header: two bytes for 255 voxels. */
 uint64_t vxm_binvox_bytes(const vxm_space *space);
 /** @param version 1, or 2 where values are labels */
-vxm_status vxm_binvox_header_write(vxm_output *output, const vxm_space *space, int version, vxm_error *error);
+void vxm_binvox_header_write(vxm_output *output, const vxm_space *space, int version);
 /** Writes a slice across x of labels up to 255, y fastest, then z, and its padding to a side of the cube. */
 void vxm_binvox_put_slice(vxm_output *output, const vxm_space *space, const uint16_t *values);
 /** Writes the padding behind the last slice. */

@@ -118,19 +118,18 @@ static bool sniff(const vxm_input *input) {
 /* ---- Writing ---- */
 
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
+  (void)error;
   vxm_nifti_block block;
-  vxm_status status = vxm_nifti_header_make(&block, &w->space, &w->values, error);
-  if (status == VXM_OK)
-    vxm_output_write(w->output, block.bytes, block.size);
-  return status;
+  vxm_nifti_header_make(&block, &w->space, &w->values);
+  vxm_output_write(w->output, block.bytes, block.size);
+  return VXM_OK;
 }
 
 static vxm_status begin_packed(vxm_values_writer *w, vxm_error *error) {
   vxm_nifti_block block;
   vxm_deflater *deflater = NULL;
-  vxm_status status = vxm_nifti_header_make(&block, &w->space, &w->values, error);
-  if (status == VXM_OK)
-    status = vxm_deflater_create(&deflater, w->context, w->output, VXM_DEFLATE_GZIP, error);
+  vxm_nifti_header_make(&block, &w->space, &w->values);
+  vxm_status status = vxm_deflater_create(&deflater, w->context, w->output, VXM_DEFLATE_GZIP, error);
   w->state = deflater;
   if (status == VXM_OK)
     vxm_deflater_write(deflater, block.bytes, block.size);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/nifti_header.h"
+#include "base/c_locale.h"
 #include "base/endian.h"
 
 #include <float.h>
 #include <inttypes.h>
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -331,13 +331,9 @@ void vxm_nifti_extension_read(vxm_nifti_header *h, const unsigned char *data, si
   size_t length = size - 8 - mark < sizeof text ? size - 8 - mark : sizeof text - 1;
   memcpy(text, data + 8 + mark, length);
   text[length] = '\0';
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return;
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   read_exact(&h->raster.space, text);
   uselocale(previous);
-  freelocale(c);
 }
 
 /* ---- Writing: little-endian ---- */
@@ -427,8 +423,7 @@ static bool is_narrow(const vxm_space *space) {
   return true;
 }
 
-vxm_status vxm_nifti_header_make(vxm_nifti_block *out, const vxm_space *space, const vxm_values_spec *values,
-                                 vxm_error *error) {
+void vxm_nifti_header_make(vxm_nifti_block *out, const vxm_space *space, const vxm_values_spec *values) {
   const int64_t *n = space->dims;
   bool is_wide = n[0] > INT16_MAX || n[1] > INT16_MAX || n[2] > INT16_MAX || !is_narrow(space);
   const places *p = is_wide ? &version_2 : &version_1;
@@ -441,18 +436,13 @@ vxm_status vxm_nifti_header_make(vxm_nifti_block *out, const vxm_space *space, c
   put_type(bytes, p, values);
   put_place(bytes, p, space, values);
   memcpy(bytes + p->text, "voxmend", 7);
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   bytes[size] = 1; /* an extension follows */
   size_t front = size + VXM_NIFTI_MARK;
   out->size = front + put_extension(bytes + front, sizeof out->bytes - front, space);
   uselocale(previous);
-  freelocale(c);
   if (is_wide)
     put_int(bytes + p->offset, (int64_t)out->size, 8);
   else
     put_real(bytes + p->offset, (double)out->size, false);
-  return VXM_OK;
 }

@@ -40,8 +40,6 @@ typedef struct vxm_nifti_block {
   size_t size; /**< the values follow */
 } vxm_nifti_block;
 
-/** @return VXM_OK, VXM_ERROR_MEMORY */
-vxm_status vxm_nifti_header_make(vxm_nifti_block *out, const vxm_space *space, const vxm_values_spec *values,
-                                 vxm_error *error);
+void vxm_nifti_header_make(vxm_nifti_block *out, const vxm_space *space, const vxm_values_spec *values);
 
 #endif

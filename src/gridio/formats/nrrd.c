@@ -184,7 +184,9 @@ static size_t state_bytes(const vxm_space *space) {
 
 static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
   const vxm_nrrd_values values = {"1 where a voxel is set", VXM_UINT8, 1, NULL};
-  return vxm_nrrd_header_write(writer->output, &values, &writer->space, error);
+  (void)error;
+  vxm_nrrd_header_write(writer->output, &values, &writer->space);
+  return VXM_OK;
 }
 
 static const vxm_grid_writer_kind writer_kind = {
@@ -200,7 +202,9 @@ static const vxm_grid_writer_kind writer_kind = {
 static vxm_status begin_values(vxm_values_writer *w, vxm_error *error) {
   const vxm_nrrd_values header = {"a number per voxel, at its centre", w->values.scalar, w->values.channels,
                                   w->values.about};
-  return vxm_nrrd_header_write(w->output, &header, &w->space, error);
+  (void)error;
+  vxm_nrrd_header_write(w->output, &header, &w->space);
+  return VXM_OK;
 }
 
 static const vxm_values_writer_kind values_kind = {

@@ -57,7 +57,6 @@ static bool accept(text *line, char c) {
 typedef struct fields {
   const vxm_input *input;
   vxm_error *error;
-  locale_t c_locale;
   vxm_nrrd_header *header;
   size_t line; /**< offset of the line at hand */
   bool has_type, has_dimension, has_sizes, has_encoding, has_endian, has_spacings, has_directions, has_origin,
@@ -71,10 +70,9 @@ static vxm_status fail(const fields *f, const char *what) {
   return vxm_fail_byte(f->error, f->input, f->line, "nrrd header: %s", what);
 }
 
-static bool read_number(const fields *f, text *line, const char *stops, double *value) {
+static bool read_number(text *line, const char *stops, double *value) {
   text word;
-  return next_word(line, &word, stops) &&
-         vxm_number_parse(word.at, (size_t)(word.end - word.at), f->c_locale, value);
+  return next_word(line, &word, stops) && vxm_number_parse(word.at, (size_t)(word.end - word.at), value);
 }
 
 /** Goes behind what is said of the axis of colours, where there is one. */
@@ -85,18 +83,18 @@ static void skip_color(const fields *f, text *line) {
 }
 
 /** Three numbers and nothing else. */
-static bool read_three(const fields *f, text line, double values[3]) {
+static bool read_three(text line, double values[3]) {
   for (int a = 0; a < 3; a++)
-    if (!read_number(f, &line, "", &values[a]))
+    if (!read_number(&line, "", &values[a]))
       return false;
   trim(&line);
   return line.at == line.end;
 }
 
 /** "(1,2,3)" */
-static bool read_vector(const fields *f, text *line, double values[3]) {
+static bool read_vector(text *line, double values[3]) {
   for (int a = 0; a < 3; a++)
-    if (!accept(line, a == 0 ? '(' : ',') || !read_number(f, line, ",)", &values[a]))
+    if (!accept(line, a == 0 ? '(' : ',') || !read_number(line, ",)", &values[a]))
       return false;
   return accept(line, ')');
 }
@@ -148,7 +146,7 @@ static vxm_status read_sizes(fields *f, text line) {
   if (f->header->channels == 4 && !(next_word(&colors, &word, "") && equals(word, "4")))
     return fail(f, dimensions);
   skip_color(f, &line);
-  if (!read_three(f, line, sizes))
+  if (!read_three(line, sizes))
     return fail(f, "the sizes must be three whole numbers");
   for (int a = 0; a < 3; a++) {
     if (!(fabs(sizes[a]) < 0x1p53) || sizes[a] != trunc(sizes[a]))
@@ -172,17 +170,17 @@ static vxm_status read_endian(fields *f, text line) {
 
 static vxm_status read_spacings(fields *f, text line) {
   skip_color(f, &line);
-  return read_three(f, line, f->spacings) ? VXM_OK : fail(f, "the spacings must be three numbers");
+  return read_three(line, f->spacings) ? VXM_OK : fail(f, "the spacings must be three numbers");
 }
 
 static vxm_status read_mins(fields *f, text line) {
   skip_color(f, &line);
-  return read_three(f, line, f->mins) ? VXM_OK : fail(f, "the axis mins must be three numbers");
+  return read_three(line, f->mins) ? VXM_OK : fail(f, "the axis mins must be three numbers");
 }
 
 static vxm_status read_maxs(fields *f, text line) {
   skip_color(f, &line);
-  return read_three(f, line, f->maxs) ? VXM_OK : fail(f, "the axis maxs must be three numbers");
+  return read_three(line, f->maxs) ? VXM_OK : fail(f, "the axis maxs must be three numbers");
 }
 
 static vxm_status read_centerings(fields *f, text line) {
@@ -198,7 +196,7 @@ static vxm_status read_directions(fields *f, text line) {
   skip_color(f, &line);
   for (int a = 0; a < 3; a++) {
     double v[3];
-    if (!read_vector(f, &line, v))
+    if (!read_vector(&line, v))
       return fail(f, "the space directions must be three vectors like (1,0,0)");
     if (v[(a + 1) % 3] != 0 || v[(a + 2) % 3] != 0 || !(v[a] > 0))
       return fail(f, "the axes are turned, swapped or mirrored; only axes along x, y and z can be read");
@@ -208,7 +206,7 @@ static vxm_status read_directions(fields *f, text line) {
 }
 
 static vxm_status read_origin(fields *f, text line) {
-  return read_vector(f, &line, f->first) ? VXM_OK : fail(f, "the space origin must be a vector like (0,0,0)");
+  return read_vector(&line, f->first) ? VXM_OK : fail(f, "the space origin must be a vector like (0,0,0)");
 }
 
 static vxm_status read_skip(fields *f, text line) {
@@ -269,7 +267,7 @@ static vxm_status read_pair(fields *f, text name, text value) {
   char kind[16];
   size_t length = (size_t)(value.end - value.at);
   if (equals(name, VXM_NRRD_ORIGIN_KEY))
-    f->has_corner = read_three(f, value, f->corner);
+    f->has_corner = read_three(value, f->corner);
   else if (equals(name, VXM_NRRD_VALUES_KEY) && length < sizeof kind) {
     memcpy(kind, value.at, length);
     kind[length] = '\0';
@@ -376,11 +374,7 @@ vxm_status vxm_nrrd_header_read(vxm_nrrd_header *out, const vxm_input *input, vx
   if (!vxm_nrrd_sniff(input))
     return vxm_fail_byte(error, input, 0, "not a nrrd file: it does not begin with \"NRRD000\"");
   fields f = {.input = input, .error = error, .header = out};
-  f.c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!f.c_locale)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
   vxm_status status = read_lines(&f);
-  freelocale(f.c_locale);
   if (status == VXM_OK)
     find_space(&f, warnings);
   return status;

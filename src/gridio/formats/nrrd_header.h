@@ -48,10 +48,7 @@ typedef struct vxm_nrrd_values {
 /**
  * Writes the header, an empty line last. The values follow raw, x fastest, then y, then z. 16-bit floats are
  * none of NRRD's types.
- *
- * @return VXM_OK, VXM_ERROR_MEMORY
  */
-vxm_status vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *values, const vxm_space *space,
-                                 vxm_error *error);
+void vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *values, const vxm_space *space);
 
 #endif

@@ -5,11 +5,11 @@
 #include <inttypes.h>
 
 /** Writes a form in which stars stand for the numbers, which read back bit for bit, whatever the locale. */
-static void write_numbers(vxm_output *output, locale_t c_locale, const char *form, const double *values) {
+static void write_numbers(vxm_output *output, const char *form, const double *values) {
   for (; *form; form++)
     if (*form == '*') {
       char number[VXM_NUMBER_ROOM];
-      vxm_output_write(output, number, vxm_number_write(number, *values++, c_locale));
+      vxm_output_write(output, number, vxm_number_write(number, *values++));
     } else
       vxm_output_write(output, form, 1);
 }
@@ -95,13 +95,9 @@ static void write_about(vxm_output *output, const vxm_nrrd_values *values) {
   }
 }
 
-vxm_status vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *values, const vxm_space *space,
-                                 vxm_error *error) {
+void vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *values, const vxm_space *space) {
   const int64_t *dims = space->dims;
   bool is_color = values->channels == 4;
-  locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c_locale)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
   double first[3];
   for (int a = 0; a < 3; a++)
     first[a] = space->origin[a] + space->voxel_size[a] / 2;
@@ -111,17 +107,15 @@ vxm_status vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *valu
   vxm_output_printf(output, "sizes: %s%" PRId64 " %" PRId64 " %" PRId64 "\n", is_color ? "4 " : "", dims[0],
                     dims[1], dims[2]);
   vxm_output_printf(output, "space directions: %s", is_color ? "none " : "");
-  write_numbers(output, c_locale, "(*,0,0) (0,*,0) (0,0,*)\n", space->voxel_size);
+  write_numbers(output, "(*,0,0) (0,*,0) (0,0,*)\n", space->voxel_size);
   vxm_output_printf(output, "kinds: %sdomain domain domain\ncenterings: %scell cell cell\n",
                     is_color ? "RGBA-color " : "", is_color ? "none " : "");
   if (vxm_scalar_bytes(values->scalar) > 1)
     vxm_output_printf(output, "endian: little\n");
   vxm_output_printf(output, "encoding: raw\n");
-  write_numbers(output, c_locale, "space origin: (*,*,*)\n", first);
+  write_numbers(output, "space origin: (*,*,*)\n", first);
   vxm_output_printf(output, "%s:=", VXM_NRRD_ORIGIN_KEY);
-  write_numbers(output, c_locale, "* * *\n", space->origin);
-  freelocale(c_locale);
+  write_numbers(output, "* * *\n", space->origin);
   write_about(output, values);
   vxm_output_write(output, "\n", 1);
-  return VXM_OK;
 }

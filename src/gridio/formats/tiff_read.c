@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** .tif in: stacks of uncompressed pages that are alike, TIFF or BigTIFF, of either byte order. */
+#include "base/c_locale.h"
 #include "base/endian.h"
 #include "gridio/formats/tiff.h"
 
 #include <inttypes.h>
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -232,26 +232,21 @@ static void take_lines(stack *s) {
   }
 }
 
-static vxm_status describe(stack *s, vxm_error *error) {
+static void describe(stack *s) {
   entry e;
   if (find_entry(&e, s, s->first, VXM_TIFF_DESCRIPTION) && e.type == VXM_TIFF_ASCII) {
     size_t length = e.count < TEXT_MAX ? (size_t)e.count : TEXT_MAX - 1;
     memcpy(s->text, s->input->data + e.at, length);
     s->text[length] = '\0';
   }
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   take_lines(s);
   double images = text_number(s, "images=", 1);
   uselocale(previous);
-  freelocale(c);
   if (s->pages == 1 && images > 1 && images <= PAGES_MAX) {
     s->is_joined = true;
     s->pages = (int64_t)images;
   }
-  return VXM_OK;
 }
 
 /* ---- A file ---- */
@@ -277,10 +272,9 @@ static vxm_status read_header(stack *s, const vxm_input *input, vxm_error *error
     status = fail(s, "it has no page", error);
   if (status == VXM_OK)
     status = find_type(s, error);
-  if (status == VXM_OK)
-    status = describe(s, error);
   if (status != VXM_OK)
     return status;
+  describe(s);
   uint64_t width = value_of(s, s->first, VXM_TIFF_WIDTH, 0, 0),
            length = value_of(s, s->first, VXM_TIFF_LENGTH, 0, 0);
   vxm_space *space = &s->raster.space;

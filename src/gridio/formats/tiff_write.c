@@ -3,12 +3,12 @@
  * .tif out: the header, what all pages share, all values, and then a directory for each page. All sizes are
  * known before, so that the file is written from front to back; where it passes 4 GiB it is a BigTIFF.
  */
+#include "base/c_locale.h"
 #include "base/endian.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/tiff.h"
 
 #include <inttypes.h>
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -101,13 +101,10 @@ static const char *kind_of(const vxm_values_spec *values) {
 }
 
 /** ImageJ's lines, where origins are counted in voxels, and the exact one. */
-static vxm_status describe(tiff *t, const vxm_values_writer *w, vxm_error *error) {
+static void describe(tiff *t, const vxm_values_writer *w) {
   const double *o = w->space.origin, *s = w->space.voxel_size;
   const char *range = w->values.is_bits ? "min=0.0\nmax=1.0\n" : "";
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   int length =
       snprintf(t->text, sizeof t->text,
                "ImageJ=1.11a\nimages=%" PRId64 "\nslices=%" PRId64
@@ -116,9 +113,7 @@ static vxm_status describe(tiff *t, const vxm_values_writer *w, vxm_error *error
                w->space.dims[2], w->space.dims[2], range, s[2], -o[0] / s[0], -o[1] / s[1], -o[2] / s[2],
                kind_of(&w->values), o[0], o[1], o[2], s[0], s[1], s[2]);
   uselocale(previous);
-  freelocale(c);
   t->description_bytes = (uint64_t)length + 1;
-  return VXM_OK;
 }
 
 static void put_number(vxm_output *output, uint64_t value, size_t size) {
@@ -183,9 +178,7 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   if (!t)
     return status;
   w->state = t;
-  status = describe(t, w, error);
-  if (status != VXM_OK)
-    return status;
+  describe(t, w);
   plan(t, w, false);
   if (t->directories + directory_bytes(w, t) > UINT32_MAX)
     plan(t, w, true);

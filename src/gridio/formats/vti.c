@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** .vti: an image in VTK's XML, with the values appended as raw bytes. */
+#include "base/c_locale.h"
 #include "base/endian.h"
 #include "gridio/common/deflate.h"
 #include "gridio/formats/vtk_image.h"
 
 #include <inttypes.h>
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -283,13 +283,9 @@ static vxm_status read_packed(vxm_field **out, const vxm_raster *raster, vxm_abo
 
 /** Reads the XML by the numbers of the locale "C". */
 static vxm_status read_header(vxm_raster *raster, vxm_about *about, scan *s, vxm_error *error) {
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   vxm_status status = take_xml(s, error);
   uselocale(previous);
-  freelocale(c);
   if (status == VXM_OK)
     status = vxm_vtk_raster(raster, about, &s->image, s->input, 0, error);
   if (status != VXM_OK)
@@ -353,13 +349,10 @@ static void put_xml(vxm_values_writer *w) {
 }
 
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  (void)error;
+  locale_t previous = uselocale(vxm_c_locale());
   put_xml(w);
   uselocale(previous);
-  freelocale(c);
   uint64_t bytes = vxm_le64(vxm_values_plain_bytes(&w->space, &w->values));
   vxm_output_write(w->output, &bytes, sizeof bytes);
   return VXM_OK;

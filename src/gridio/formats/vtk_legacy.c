@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** .vtk: an image in VTK's older format, lines of text with big-endian values behind them. */
+#include "base/c_locale.h"
 #include "base/endian.h"
 #include "gridio/formats/vtk_image.h"
 
 #include <inttypes.h>
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -164,15 +164,11 @@ static vxm_status take_header(scan *s, vxm_error *error) {
 
 /** Reads the header by the numbers of the locale "C". */
 static vxm_status read_header(vxm_raster *raster, vxm_about *about, scan *s, vxm_error *error) {
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   for (int a = 0; a < 3; a++)
     s->image.spacing[a] = 1;
   vxm_status status = take_header(s, error);
   uselocale(previous);
-  freelocale(c);
   if (status == VXM_OK)
     status = vxm_vtk_raster(raster, about, &s->image, s->input, s->at, error);
   if (status != VXM_OK)
@@ -214,12 +210,10 @@ static bool sniff(const vxm_input *input) {
 /* ---- Writing ---- */
 
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
+  (void)error;
   const vxm_space *s = &w->space;
   const char *name = vxm_vtk_array_name(&w->values);
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  locale_t previous = uselocale(c);
+  locale_t previous = uselocale(vxm_c_locale());
   vxm_output_printf(w->output, "%s 3.0\nvoxmend\nBINARY\nDATASET STRUCTURED_POINTS\n", signature);
   vxm_output_printf(w->output, "DIMENSIONS %" PRId64 " %" PRId64 " %" PRId64 "\n", s->dims[0] + 1,
                     s->dims[1] + 1, s->dims[2] + 1);
@@ -233,7 +227,6 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
     vxm_output_printf(w->output, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", name,
                       vxm_vtk_type_name(types, w->values.scalar));
   uselocale(previous);
-  freelocale(c);
   return VXM_OK;
 }
 

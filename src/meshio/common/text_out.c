@@ -1,25 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "meshio/common/text_out.h"
 
-vxm_status vxm_text_open(vxm_text_out *text, const vxm_soup *soup, vxm_output *output, vxm_error *error) {
-  *text = (vxm_text_out){.output = output, .soup = soup};
-  text->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!text->c_locale)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  return VXM_OK;
-}
-
-void vxm_text_close(vxm_text_out *text) {
-  freelocale(text->c_locale);
-}
-
 void vxm_text_vertex(vxm_text_out *text, const char *lead, const double position[3]) {
   char *room = vxm_output_reserve(text->output, 4 * VXM_NUMBER_ROOM);
   size_t used = 0;
   while (*lead)
     room[used++] = *lead++;
   for (size_t c = 0; c < 3; c++) {
-    used += vxm_number_write(room + used, position[c], text->c_locale);
+    used += vxm_number_write(room + used, position[c]);
     room[used++] = c < 2 ? ' ' : '\n';
   }
   vxm_output_advance(text->output, used);
@@ -31,7 +19,7 @@ void vxm_text_vertex_float(vxm_text_out *text, const char *lead, const float pos
   while (*lead)
     room[used++] = *lead++;
   for (size_t c = 0; c < 3; c++) {
-    used += vxm_number_write_float(room + used, position[c], text->c_locale);
+    used += vxm_number_write_float(room + used, position[c]);
     room[used++] = c < 2 ? ' ' : '\n';
   }
   vxm_output_advance(text->output, used);

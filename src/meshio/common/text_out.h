@@ -10,11 +10,7 @@
 typedef struct vxm_text_out {
   vxm_output *output;
   const vxm_soup *soup;
-  locale_t c_locale;
 } vxm_text_out;
-
-vxm_status vxm_text_open(vxm_text_out *text, const vxm_soup *soup, vxm_output *output, vxm_error *error);
-void vxm_text_close(vxm_text_out *text);
 
 /** `lead`, then x y z, then a line end. */
 void vxm_text_vertex(vxm_text_out *text, const char *lead, const double position[3]);

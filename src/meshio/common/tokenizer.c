@@ -4,20 +4,13 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-vxm_status vxm_tokenizer_open(vxm_tokenizer *scan, vxm_soup *soup, const unsigned char *data, size_t size,
-                              const char *name, vxm_error *error) {
-  *scan = (vxm_tokenizer){.begin = data, .at = data, .end = data + size, .name = name, .soup = soup};
-  scan->report_at = size < VXM_REPORT_BYTES ? data + size : data + VXM_REPORT_BYTES;
-  scan->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!scan->c_locale)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  return VXM_OK;
-}
-
-void vxm_tokenizer_close(vxm_tokenizer *scan) {
-  if (scan->c_locale)
-    freelocale(scan->c_locale);
-  scan->c_locale = (locale_t)0;
+vxm_tokenizer vxm_tokenizer_of(vxm_soup *soup, const unsigned char *data, size_t size, const char *name) {
+  return (vxm_tokenizer){.begin = data,
+                         .at = data,
+                         .end = data + size,
+                         .report_at = size < VXM_REPORT_BYTES ? data + size : data + VXM_REPORT_BYTES,
+                         .name = name,
+                         .soup = soup};
 }
 
 vxm_status vxm_tokenizer_report(vxm_tokenizer *scan, vxm_error *error) {
@@ -200,7 +193,7 @@ bool vxm_tokenizer_double_slow(vxm_tokenizer *scan, double *value) {
   const unsigned char *p = scan->at;
   while (p<scan->end && * p> ' ')
     p++;
-  if (!vxm_number_parse(scan->at, (size_t)(p - scan->at), scan->c_locale, value))
+  if (!vxm_number_parse(scan->at, (size_t)(p - scan->at), value))
     return false;
   scan->at = p;
   return true;

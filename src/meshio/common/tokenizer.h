@@ -15,13 +15,10 @@ typedef struct vxm_tokenizer {
   const unsigned char *report_at; /**< where progress is told next */
   const char *name;               /**< file, for messages */
   vxm_soup *soup;
-  locale_t c_locale;
 } vxm_tokenizer;
 
-/** Starts at `begin`; vxm_tokenizer_close gives the locale back. */
-vxm_status vxm_tokenizer_open(vxm_tokenizer *scan, vxm_soup *soup, const unsigned char *data, size_t size,
-                              const char *name, vxm_error *error);
-void vxm_tokenizer_close(vxm_tokenizer *scan);
+/** One that stands at the first byte. */
+vxm_tokenizer vxm_tokenizer_of(vxm_soup *soup, const unsigned char *data, size_t size, const char *name);
 
 /** 1-based line of a position. */
 int64_t vxm_tokenizer_line(const vxm_tokenizer *scan, const unsigned char *position);

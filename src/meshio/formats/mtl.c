@@ -14,7 +14,6 @@ typedef struct mtl_reader {
   size_t folder_length;
   vxm_material *material; /**< that is described; NULL if nobody asked for it */
   bool *is_described;     /**< for each material */
-  locale_t c_locale;
 } mtl_reader;
 
 static bool is_blank(char c) {
@@ -41,7 +40,7 @@ static bool next_number(mtl_reader *reader, double *value) {
   char word[WORD_MAX];
   const char *before = reader->at;
   next_word(reader, word);
-  if (word[0] && vxm_number_parse((const unsigned char *)word, strlen(word), reader->c_locale, value))
+  if (word[0] && vxm_number_parse((const unsigned char *)word, strlen(word), value))
     return true;
   reader->at = before;
   return false;
@@ -154,11 +153,8 @@ vxm_status vxm_mtl_read(vxm_appearance *appearance, const unsigned char *data, s
   mtl_reader reader = {.appearance = appearance,
                        .folder = name,
                        .folder_length = slash ? (size_t)(slash + 1 - name) : 0,
-                       .is_described = is_described,
-                       .c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
+                       .is_described = is_described};
   vxm_status status = is_described ? VXM_OK : local.code;
-  if (status == VXM_OK && !reader.c_locale)
-    status = vxm_fail(&local, VXM_ERROR_MEMORY, "not enough memory to read the materials");
   for (size_t m = 0; is_described && m < appearance->material_count; m++)
     is_described[m] =
         appearance->materials[m].has_color || appearance->materials[m].image != VXM_APPEARANCE_NONE;
@@ -170,8 +166,6 @@ vxm_status vxm_mtl_read(vxm_appearance *appearance, const unsigned char *data, s
     status = read_line(&reader, &local);
     at += at < end;
   }
-  if (reader.c_locale)
-    freelocale(reader.c_locale);
   vxm_free(appearance->context, is_described);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);

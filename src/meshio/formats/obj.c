@@ -392,19 +392,16 @@ static vxm_status finish(obj_reader *reader, vxm_error *error) {
 
 vxm_status vxm_obj_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error) {
-  obj_reader reader = {.soup = soup, .has_look = soup->appearance != NULL};
-  vxm_status status = vxm_tokenizer_open(&reader.scan, soup, data, size, name, error);
-  if (status != VXM_OK)
-    return status;
+  obj_reader reader = {
+      .soup = soup, .scan = vxm_tokenizer_of(soup, data, size, name), .has_look = soup->appearance != NULL};
   soup->format = "obj";
   vxm_tagger_open(&reader.tagger, soup);
   make_room(&reader);
-  status = read_statements(&reader, error);
+  vxm_status status = read_statements(&reader, error);
   if (status == VXM_OK)
     status = finish(&reader, error);
   vxm_obj_colors_destroy(&reader.colors, soup->context);
   vxm_tagger_close(&reader.tagger);
-  vxm_tokenizer_close(&reader.scan);
   if (status == VXM_OK)
     vxm_soup_trim(soup);
   return status;

@@ -394,17 +394,13 @@ static vxm_status read_text(vxm_tokenizer *scan, vxm_off_header *header, vxm_err
 
 vxm_status vxm_off_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error) {
-  vxm_tokenizer scan;
+  vxm_tokenizer scan = vxm_tokenizer_of(soup, data, size, name);
   vxm_off_header header;
-  vxm_status status = vxm_tokenizer_open(&scan, soup, data, size, name, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_off_read_header(&scan, &header, error);
+  vxm_status status = vxm_off_read_header(&scan, &header, error);
   if (status == VXM_OK) {
     soup->format = header.binary ? "off binary" : "off";
     status = header.binary ? vxm_off_read_binary(&scan, &header, error) : read_text(&scan, &header, error);
   }
-  vxm_tokenizer_close(&scan);
   if (status == VXM_OK)
     vxm_soup_trim(soup);
   return status;

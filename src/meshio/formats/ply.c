@@ -130,12 +130,9 @@ static vxm_status read_body(vxm_tokenizer *scan, const vxm_ply_header *header, v
 
 vxm_status vxm_ply_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error) {
-  vxm_tokenizer scan;
+  vxm_tokenizer scan = vxm_tokenizer_of(soup, data, size, name);
   vxm_ply_header header = {0};
-  vxm_status status = vxm_tokenizer_open(&scan, soup, data, size, name, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_ply_read_header(&scan, &header, error);
+  vxm_status status = vxm_ply_read_header(&scan, &header, error);
   if (status == VXM_OK) {
     soup->format = header.ascii        ? "ply ascii"
                    : header.big_endian ? "ply binary_big_endian"
@@ -143,7 +140,6 @@ vxm_status vxm_ply_read(vxm_soup *soup, const unsigned char *data, size_t size, 
     status = read_body(&scan, &header, error);
   }
   vxm_ply_header_destroy(&header, soup->context);
-  vxm_tokenizer_close(&scan);
   if (status == VXM_OK)
     vxm_soup_trim(soup);
   return status;

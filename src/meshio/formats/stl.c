@@ -122,14 +122,10 @@ static vxm_status read_binary(vxm_tokenizer *scan, vxm_error *error) {
 
 vxm_status vxm_stl_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error) {
-  vxm_tokenizer scan;
-  vxm_status status = vxm_tokenizer_open(&scan, soup, data, size, name, error);
-  if (status != VXM_OK)
-    return status;
+  vxm_tokenizer scan = vxm_tokenizer_of(soup, data, size, name);
   bool text = is_text(data, size);
   soup->format = text ? "stl ascii" : "stl binary";
-  status = text ? vxm_stl_read_text(&scan, error) : read_binary(&scan, error);
-  vxm_tokenizer_close(&scan);
+  vxm_status status = text ? vxm_stl_read_text(&scan, error) : read_binary(&scan, error);
   if (status == VXM_OK)
     vxm_soup_trim(soup);
   return status;

@@ -144,11 +144,8 @@ vxm_status vxm_meshio_write_marked(const vxm_soup *soup, const vxm_marks *marks,
   vxm_status status = vxm_output_open(&m.output, soup->context, path, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_text_open(&m.text, soup, m.output, error);
-  if (status == VXM_OK) {
-    status = write_all(&m, error);
-    vxm_text_close(&m.text);
-  }
+  m.text = (vxm_text_out){.output = m.output, .soup = soup};
+  status = write_all(&m, error);
   if (status == VXM_OK)
     return vxm_output_commit(m.output, error);
   vxm_output_abort(m.output);

@@ -21,10 +21,8 @@ static void write_header(const vxm_soup *soup, vxm_output *output, unsigned flag
 
 static vxm_status write_text(vxm_faces_out *faces, vxm_output *output, vxm_error *error) {
   const vxm_soup *soup = faces->soup;
-  vxm_text_out text;
-  vxm_status status = vxm_text_open(&text, soup, output, error);
-  if (status != VXM_OK)
-    return status;
+  vxm_text_out text = {.output = output, .soup = soup};
+  vxm_status status = VXM_OK;
   for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
     vxm_text_vertex(&text, "", vxm_position(soup, v));
     status = vxm_write_progress(soup, output, v, soup->vertex_count, 0.0, 0.6, error);
@@ -38,7 +36,6 @@ static vxm_status write_text(vxm_faces_out *faces, vxm_output *output, vxm_error
     if (status == VXM_OK)
       status = vxm_write_progress(soup, output, f, soup->face_count, 0.6, 1.0, error);
   }
-  vxm_text_close(&text);
   return status;
 }
 

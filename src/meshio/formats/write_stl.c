@@ -109,13 +109,12 @@ static vxm_status write_facets(stl_writer *writer, vxm_error *error) {
 
 vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, unsigned flags, vxm_error *error) {
   const bool ascii = flags & VXM_WRITE_ASCII;
-  stl_writer writer = {.soup = soup, .output = output, .ascii = ascii};
+  stl_writer writer = {
+      .soup = soup, .output = output, .ascii = ascii, .text = {.output = output, .soup = soup}};
   uint32_t facets = 0;
   vxm_status status = check_range(soup, error);
   if (status == VXM_OK)
     status = count_facets(soup, &facets, error);
-  if (status == VXM_OK)
-    status = vxm_text_open(&writer.text, soup, output, error);
   if (status != VXM_OK)
     return status;
   if (ascii)
@@ -129,6 +128,5 @@ vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, unsigned flag
   status = write_facets(&writer, error);
   if (ascii)
     vxm_output_printf(output, "endsolid voxmend\n");
-  vxm_text_close(&writer.text);
   return status;
 }

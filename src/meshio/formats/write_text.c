@@ -79,15 +79,11 @@ typedef vxm_status (*write_all)(vxm_text_out *text, vxm_faces_out *faces, vxm_er
 
 static vxm_status write_as(write_all write, const vxm_soup *soup, vxm_output *output, unsigned flags,
                            vxm_error *error) {
-  vxm_text_out text;
+  vxm_text_out text = {.output = output, .soup = soup};
   vxm_faces_out faces;
-  vxm_status status = vxm_text_open(&text, soup, output, error);
-  if (status != VXM_OK)
-    return status;
   vxm_faces_out_open(&faces, soup, flags & VXM_WRITE_POLYGONS);
-  status = write(&text, &faces, error);
+  vxm_status status = write(&text, &faces, error);
   vxm_faces_out_close(&faces);
-  vxm_text_close(&text);
   return status;
 }
 

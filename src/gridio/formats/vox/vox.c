@@ -232,35 +232,25 @@ static void choose_colors(vxm_vox_palette *p, vxm_field_kind kind) {
 }
 
 /** Three numbers with a space between, which read back bit for bit. */
-static void print_numbers(char text[128], const double numbers[3], locale_t c) {
+static void print_numbers(char text[128], const double numbers[3]) {
   size_t used = 0;
   for (int a = 0; a < 3; a++) {
     char number[VXM_NUMBER_ROOM];
-    size_t length = vxm_number_write(number, numbers[a], c);
+    size_t length = vxm_number_write(number, numbers[a]);
     memcpy(text + used, number, length);
     used += length;
     text[used++] = a < 2 ? ' ' : '\0';
   }
 }
 
-static vxm_status print_space(source *s, vxm_error *error) {
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (!c)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  print_numbers(s->origin, s->field->space.origin, c);
-  print_numbers(s->size, s->field->space.voxel_size, c);
-  freelocale(c);
-  return VXM_OK;
-}
-
 static vxm_status write_vox(vxm_output *output, const vxm_field *field, vxm_error *error) {
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   source s = {.field = field};
   vxm_status status = vxm_field_measure(&range, field, error);
-  if (status == VXM_OK)
-    status = print_space(&s, error);
   if (status != VXM_OK)
     return status;
+  print_numbers(s.origin, field->space.origin);
+  print_numbers(s.size, field->space.voxel_size);
   s.kind = field->channels == 4                                       ? VXM_FIELD_COLORS
            : field->about.kind == VXM_FIELD_NUMBERS && range.max <= 1 ? VXM_FIELD_NUMBERS
                                                                       : VXM_FIELD_LABELS;

@@ -39,15 +39,12 @@ static bool find_attribute(char *out, size_t room, const loaded *l, const char *
 
 /** Three numbers with a space between. */
 static bool parse_numbers(double out[3], const char *text) {
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  bool good = c != (locale_t)0;
+  bool good = true;
   for (int a = 0; good && a < 3; a++) {
     size_t length = strcspn(text, " ");
-    good = vxm_number_parse((const unsigned char *)text, length, c, &out[a]);
+    good = vxm_number_parse((const unsigned char *)text, length, &out[a]);
     text += length + (text[length] == ' ');
   }
-  if (c)
-    freelocale(c);
   return good;
 }
 
