@@ -12,17 +12,11 @@ enum { HAS_FILTER = 1 };
 enum { HAS_FILTER = 0 };
 #endif
 
-static bool has_module(const char *name) {
-  char path[VXM_MODULE_PATH_MAX];
-  vxm_module_need need = {name, "", ""};
-  return vxm_module_find(path, &need, NULL) == VXM_OK;
-}
-
 vxm_status vxm_reading_find(vxm_reading_info *out, vxm_error *error) {
   if (!out)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "reading: an argument is NULL");
-  vxm_reading_info found = {.assimp = has_module("assimp"),
-                            .occt = has_module("occt"),
+  vxm_reading_info found = {.assimp = vxm_module_exists("assimp"),
+                            .occt = vxm_module_exists("occt"),
                             .assimp_formats = VXM_ASSIMP_FORMATS,
                             .occt_formats = VXM_OCCT_FORMATS,
                             .filter = HAS_FILTER,

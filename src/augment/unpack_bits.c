@@ -25,14 +25,6 @@ static void spread_packed(unsigned char *out, const uint64_t *row, size_t dim) {
     out[b] = (unsigned char)byte_of(row, b);
 }
 
-static void spread_bytes(unsigned char *out, const uint64_t *row, size_t dim) {
-  size_t i = 0;
-  for (; i + 8 <= dim; i += 8)
-    vxm_store_le64(out + i, vxm_unpack_bits(row[i / 64] >> (i % 64)));
-  for (; i < dim; i++)
-    out[i] = (unsigned char)(row[i / 64] >> (i % 64) & 1);
-}
-
 /** What eight bits become, for each byte. */
 typedef float eight_floats[8];
 
@@ -91,7 +83,7 @@ void vxm_unpack_row(void *out, vxm_voxel_format voxels, const uint64_t *words, s
     if (voxels == VXM_VOXEL_FORMAT_PACKED)
       spread_packed(to, words, n);
     else if (voxels == VXM_VOXEL_FORMAT_UINT8)
-      spread_bytes(to, words, n);
+      vxm_unpack_words(to, words, n);
     else
       spread_floats((float *)(void *)to, words, n, (const eight_floats *)table, streaming);
 #if defined(__SSE2__)

@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
@@ -14,13 +13,6 @@
 /* ---- Temporary names ---- */
 
 enum { ATTEMPTS = 1000 };
-
-static void name_temporary(vxm_atomic_file *file, int attempt) {
-  uint32_t hash = 2166136261U; /* FNV-1a: the same for every process that writes this file */
-  for (const char *c = file->destination.name; *c; c++)
-    hash = (hash ^ (unsigned char)*c) * 16777619U;
-  snprintf(file->temporary, sizeof file->temporary, "voxmend-%08x-%d.tmp", (unsigned)hash, attempt);
-}
 
 static bool lock(int descriptor, int flags) {
   while (flock(descriptor, LOCK_EX | flags) != 0)
@@ -56,7 +48,7 @@ static bool remove_abandoned(const vxm_atomic_file *file) {
 /** Tries names until `take` has one; it fails with EEXIST where the name is taken. */
 static bool find_name(vxm_atomic_file *file, bool (*take)(vxm_atomic_file *file)) {
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
-    name_temporary(file, attempt);
+    vxm_temporary_name(file->temporary, file->destination.name, attempt);
     if (take(file))
       return true;
     if (errno != EEXIST)

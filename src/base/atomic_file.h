@@ -14,8 +14,8 @@
 typedef struct vxm_atomic_file {
   vxm_output_path destination;
   int descriptor;
-  char temporary[48]; /**< its name in the folder until it is published, then the name of the file that it
-                           replaced; "" = none */
+  char temporary[VXM_TEMPORARY_NAME]; /**< its name in the folder until it is published, then the name of the
+                           file that it replaced; "" = none */
   bool is_published, has_replaced;
 } vxm_atomic_file;
 

@@ -5,13 +5,12 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <unistd.h>
 
-enum { ATTEMPTS = 1000, DEPTH_MAX = 8, TEMPORARY_MAX = VXM_ATOMIC_FOLDER_TEMPORARY };
+enum { ATTEMPTS = 1000, DEPTH_MAX = 8 };
 
 static const int folder_flags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
 
@@ -124,20 +123,13 @@ static bool split(char lead[PATH_MAX], char name[NAME_MAX + 1], const char *path
   return true;
 }
 
-static void name_temporary(vxm_atomic_folder *folder, const char *name, int attempt) {
-  uint32_t hash = 2166136261U; /* FNV-1a: the same for every process that writes this folder */
-  for (const char *c = name; *c; c++)
-    hash = (hash ^ (unsigned char)*c) * 16777619U;
-  snprintf(folder->temporary, sizeof folder->temporary, "voxmend-%08x-%d.tmp", (unsigned)hash, attempt);
-}
-
 /** Where it is to be: links on the way are followed as those to files are, by a name that is not there yet.
  */
 static bool find_spot(vxm_atomic_folder *folder, const char *path) {
   char lead[PATH_MAX], name[NAME_MAX + 1], probe[PATH_MAX];
   if (!split(lead, name, path))
     return false;
-  name_temporary(folder, name, ATTEMPTS);
+  vxm_temporary_name(folder->temporary, name, ATTEMPTS);
   int length = snprintf(probe, sizeof probe, "%s%s", lead, folder->temporary);
   folder->temporary[0] = '\0';
   errno = ENAMETOOLONG;
@@ -164,8 +156,8 @@ static void remove_abandoned(const vxm_atomic_folder *folder, const char *name) 
     close(descriptor);
 }
 
-static void name_moved(char out[TEMPORARY_MAX], const vxm_atomic_folder *folder) {
-  memcpy(out, folder->temporary, TEMPORARY_MAX);
+static void name_moved(char out[VXM_TEMPORARY_NAME], const vxm_atomic_folder *folder) {
+  memcpy(out, folder->temporary, VXM_TEMPORARY_NAME);
   memcpy(strrchr(out, '.'), ".old", sizeof ".old"); /* for ".tmp" */
 }
 
@@ -197,8 +189,8 @@ static bool make(vxm_atomic_folder *folder) {
   /* What others may not read is not shown to them until it is complete either. */
   const mode_t mode = has_old && old.st_uid == geteuid() ? (old.st_mode & 0777) | S_IRWXU : 0777;
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
-    char moved[TEMPORARY_MAX];
-    name_temporary(folder, folder->destination.name, attempt);
+    char moved[VXM_TEMPORARY_NAME];
+    vxm_temporary_name(folder->temporary, folder->destination.name, attempt);
     remove_abandoned(folder, folder->temporary);
     name_moved(moved, folder);
     if (has_old) /* else it may be all that is left of it */
@@ -298,7 +290,7 @@ bool vxm_atomic_folder_put(const vxm_atomic_folder *folder, const char *name, co
 /** Moves the old one away where names cannot be exchanged. */
 static bool move_old(vxm_atomic_folder *folder) {
   const int parent = folder->destination.folder;
-  char old[TEMPORARY_MAX];
+  char old[VXM_TEMPORARY_NAME];
   name_moved(old, folder);
   if (renameat(parent, folder->destination.name, parent, old) != 0)
     return false;

@@ -19,14 +19,12 @@
  * @param depth     0 for what lies in the folder itself */
 typedef bool (*vxm_folder_part_fn)(const char *name, bool is_folder, int depth);
 
-enum { VXM_ATOMIC_FOLDER_TEMPORARY = 48 };
-
 typedef struct vxm_atomic_folder {
   vxm_output_path destination; /**< `name` may be that of a folder */
   int descriptor;              /**< of the new one, locked */
   int old;                     /**< of what it replaced, locked; -1 = none */
   /** Its name until it is published, then the name of the folder that it replaced; "" = none. */
-  char temporary[VXM_ATOMIC_FOLDER_TEMPORARY];
+  char temporary[VXM_TEMPORARY_NAME];
   bool is_published, has_replaced;
   const char *mark, *what; /**< as given */
   vxm_folder_part_fn is_part;

@@ -169,4 +169,13 @@ static inline uint64_t vxm_unpack_bits(uint64_t bits) {
   return vxm_nonzero_bytes((bits & 0xff) * UINT64_C(0x0101010101010101) & spread);
 }
 
+/** The first `count` bits of words to a byte each. */
+static inline void vxm_unpack_words(unsigned char *bytes, const uint64_t *words, size_t count) {
+  size_t n = 0;
+  for (; n + 8 <= count; n += 8)
+    vxm_store_le64(bytes + n, vxm_unpack_bits(words[n / 64] >> (n % 64)));
+  for (; n < count; n++)
+    bytes[n] = (unsigned char)(words[n / 64] >> (n % 64) & 1);
+}
+
 #endif

@@ -6,6 +6,8 @@
 #include "base/sized.h"
 #include "voxmend/base.h"
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -33,6 +35,11 @@ vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what);
 /** Hands an error that was kept aside, by a worker or until it was known that it counts, to the caller. */
 static inline void vxm_error_pass(vxm_error *error, const vxm_error *kept) {
   VXM_RESULT_WRITE(error, kept);
+}
+
+/** Whether memory was lacking, whatever else may be done without. */
+static inline bool vxm_is_memory(vxm_status status) {
+  return status == VXM_ERROR_MEMORY || status == VXM_ERROR_MEMORY_LIMIT;
 }
 
 /** Makes text fit for a line that is shown: a control code becomes a question mark. */

@@ -142,6 +142,12 @@ vxm_status vxm_module_find(char path[VXM_MODULE_PATH_MAX], const vxm_module_need
   return find_file(path, need->name) ? VXM_OK : missing(need, error);
 }
 
+bool vxm_module_exists(const char *name) {
+  char path[VXM_MODULE_PATH_MAX];
+  const vxm_module_need need = {name, "", ""};
+  return vxm_module_find(path, &need, NULL) == VXM_OK;
+}
+
 vxm_status vxm_module_load(const vxm_module **out, const char *path, const char *purpose, vxm_error *error) {
   *out = NULL;
   /* Opening it again costs a look-up. It is never closed: libraries of C++ may leave threads and handlers

@@ -10,6 +10,8 @@
 #include "build_hash.h"
 #include "voxmend/base.h"
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -49,6 +51,8 @@ vxm_status vxm_module_open(const vxm_module **out, const vxm_module_need *need, 
 
 /** Where a module lies. */
 vxm_status vxm_module_find(char path[VXM_MODULE_PATH_MAX], const vxm_module_need *need, vxm_error *error);
+/** Whether there is a module of this name. */
+bool vxm_module_exists(const char *name);
 /** Opens the module at a path; `purpose` is what asks for it. */
 vxm_status vxm_module_load(const vxm_module **out, const char *path, const char *purpose, vxm_error *error);
 

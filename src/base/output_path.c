@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/vfs.h>
@@ -157,6 +158,13 @@ bool vxm_output_path_find(vxm_output_path *out, const char *path) {
   int reason = errno;
   vxm_output_path_close(out);
   return fail(reason);
+}
+
+void vxm_temporary_name(char out[VXM_TEMPORARY_NAME], const char *name, int attempt) {
+  uint32_t hash = 2166136261U; /* FNV-1a */
+  for (const char *c = name; *c; c++)
+    hash = (hash ^ (unsigned char)*c) * 16777619U;
+  snprintf(out, VXM_TEMPORARY_NAME, "voxmend-%08x-%d.tmp", (unsigned)hash, attempt);
 }
 
 void vxm_output_path_close(vxm_output_path *destination) {

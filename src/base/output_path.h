@@ -24,4 +24,10 @@ typedef struct vxm_output_path {
 bool vxm_output_path_find(vxm_output_path *out, const char *path);
 void vxm_output_path_close(vxm_output_path *destination);
 
+enum { VXM_TEMPORARY_NAME = 48 };
+
+/** What a file or folder is called until it is complete, "voxmend-HASH-N.tmp": the same for every process
+ * that writes to this name. */
+void vxm_temporary_name(char out[VXM_TEMPORARY_NAME], const char *name, int attempt);
+
 #endif

@@ -129,12 +129,6 @@ static const char *find_stranger(const unsigned char *data, size_t size) {
   return NULL;
 }
 
-static bool has_module(const char *name) {
-  char path[VXM_MODULE_PATH_MAX];
-  vxm_module_need need = {name, "", ""};
-  return vxm_module_find(path, &need, NULL) == VXM_OK;
-}
-
 static vxm_status refuse_unknown(const unsigned char *data, size_t size, const char *name, vxm_error *error) {
   vxm_place place = {name, 0, -1, -1};
   /* The extension first: .usdz is a zip archive too, but to unpack it does not help. */
@@ -146,7 +140,8 @@ static vxm_status refuse_unknown(const unsigned char *data, size_t size, const c
   return vxm_fail_at(
       error, VXM_ERROR_FORMAT, place,
       "not a known mesh format by content or extension; what is read here: off obj stl ply%s%s",
-      has_module("assimp") ? " " VXM_ASSIMP_FORMATS : "", has_module("occt") ? " " VXM_OCCT_FORMATS : "");
+      vxm_module_exists("assimp") ? " " VXM_ASSIMP_FORMATS : "",
+      vxm_module_exists("occt") ? " " VXM_OCCT_FORMATS : "");
 }
 
 /** Whatever the format and the command: such faces are gone once the mesh is repaired, and no voxel tells it.

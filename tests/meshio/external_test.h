@@ -26,13 +26,6 @@ static inline void leave_signals_alone(void) {
   setenv("ASAN_OPTIONS", all, 1);
 }
 
-/** Whether this build has the module. */
-static inline bool has_module(const char *name) {
-  char path[VXM_MODULE_PATH_MAX];
-  vxm_module_need need = {name, "", ""};
-  return vxm_module_find(path, &need, NULL) == VXM_OK;
-}
-
 /** Reads in this process, where a sanitizer watches the module and sees what it leaves behind. */
 static inline vxm_soup *read_in_process(const char *name, const char *hint, const bytes *b) {
   const vxm_module *module;

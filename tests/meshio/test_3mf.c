@@ -108,7 +108,7 @@ static bytes three_mf(void) {
 static void test_3mf(void **state) {
   (void)state;
   static const double bounds[6] = {0, 0, 0, 6, 11, 1};
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes b = three_mf();
   static const char *const names[] = {"a.3mf", "a.zip"};
@@ -147,7 +147,7 @@ static void test_3mf_units(void **state) {
   } cases[] = {{"unit=\"micron\"", 0.001}, {"unit = 'millimeter'", 1}, {"unit=\"centimeter\"", 10},
                {"unit=\"inch\"", 25.4},    {"unit=\"foot\"", 304.8},   {"unit=\"meter\"", 1000},
                {"unit=\"parsec\"", 1},     {"xml:unit=\"inch\"", 1},   {"", 1}};
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
     char model[2000];
@@ -182,7 +182,7 @@ static void test_3mf_extensions(void **state) {
        "is not read: export it without, or as .stl or .obj"},
       {BEAMS " requiredextensions=\"bb\"", "", NULL},
   };
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   const size_t count = sizeof cases / sizeof *cases;
   for (size_t n = 0; n < 2 * count; n++) { /* lib3mf writes numbers of 64 bits whatever the size */
@@ -203,7 +203,7 @@ static void test_3mf_extensions(void **state) {
 /** Many entries of the same bytes could make work for hours of a small archive. */
 static void test_3mf_overlap(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes archive = {0}, directory = {0};
   char model[1000];
@@ -222,7 +222,7 @@ static void test_3mf_overlap(void **state) {
 
 static void test_damage(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes b = three_mf();
   damage_many(&b, "a.3mf", 40 / SLOWER);
@@ -231,7 +231,7 @@ static void test_damage(void **state) {
 
 static void test_in_process(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes b = three_mf();
   vxm_soup_destroy(read_in_process("assimp", "3mf", &b));

@@ -51,7 +51,7 @@ static void test_transforms(void **state) {
        {12, 0, 0, 14, 2, 2},
        8.0 / 6},
   };
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     vxm_soup *soup = read_gltf(cases[i].node, TRIANGLES);
@@ -86,7 +86,7 @@ static void test_names(void **state) {
        4,
        {"M\xc3\xbcller/?b/red"}},
   };
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     vxm_soup *soup = read_gltf(cases[i].nodes, cases[i].primitive);
@@ -98,7 +98,7 @@ static void test_names(void **state) {
 
 static void test_lines_and_points(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (int mode = 0; mode < 2; mode++) {
     char primitive[48];
@@ -120,7 +120,7 @@ static void test_stool(void **state) {
                                      "leg#3/steel", "leg#4/steel", NULL};
   static const char *const names[] = {"dir/stool.glb", "stool.GLB", "stool.dat", "stool.gltf",
                                       "stool",         "-",         "<memory>"};
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   double leg = STOOL_CORNERS / 2.0 * sin(2 * 3.14159265358979323846 / STOOL_CORNERS) * STOOL_RADIUS *
                STOOL_RADIUS * STOOL_LEG;
@@ -149,7 +149,7 @@ static void test_required(void **state) {
                  {"CESIUM_RTC", "export it without"},
                  {"XX_unknown", "export it without"}};
   char nodes[200], told[200];
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (size_t i = 0; i < 5; i++) {
     snprintf(nodes, sizeof nodes, "{\"mesh\":0}],\"extensionsRequired\":[\"%s\"", harmless[i]);
@@ -179,7 +179,7 @@ static void test_required(void **state) {
 /** The named format decides where the name of the file says nothing. */
 static void test_format(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   vxm_mesh_read_options options = VXM_MESH_READ_OPTIONS_INIT;
   vxm_error error = VXM_ERROR_INIT;
@@ -195,7 +195,7 @@ static void test_format(void **state) {
 static void test_damage(void **state) {
   (void)state;
   enum { TIMES = 40 / SLOWER };
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes glb = scene_bytes(scene_write_glb), text = gltf("{\"mesh\":0}", TRIANGLES);
   damage_many(&glb, "a.glb", TIMES);
@@ -209,7 +209,7 @@ static void test_damage(void **state) {
 
 static void test_in_process(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes glb = scene_bytes(scene_write_glb);
   vxm_soup_destroy(read_in_process("assimp", "glb", &glb));

@@ -49,7 +49,7 @@ static void test_quantized(void **state) {
     int kind;
     int64_t least, most;
   } kinds[] = {{5120, -128, 127}, {5121, 0, 255}, {5122, -32768, 32767}, {5123, 0, 65535}};
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (int k = 0; k < 4; k++)
     for (int n = 0; n < 2; n++) {
@@ -73,7 +73,7 @@ static void test_quantized_scale(void **state) {
   (void)state;
   static const double bounds[6] = {1, 0, 0, 2, 1, 1};
   static const int64_t numbers[12] = {0, 0, 0, 100, 0, 0, 0, 100, 0, 0, 0, 100};
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes b = quantized(5122, false, numbers, ",\"scale\":[0.01,0.01,0.01],\"translation\":[1,0,0]");
   vxm_soup *soup = read_data(b.data, b.size, "a.glb");
@@ -116,7 +116,7 @@ static void test_quantized_damage(void **state) {
       {"{\"asset\"", "[\"asset\"", "its JSON is damaged: line 1"},
       {"BIN", "BIX", NULL},
   };
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     bytes b = quantized(5122, false, numbers, "");
@@ -139,7 +139,7 @@ static void test_quantized_damage(void **state) {
 static void test_quantized_sharing(void **state) {
   (void)state;
   static const int counts[] = {20, 200}; /* of 24 bytes each, over a buffer of 72 */
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (int k = 0; k < 2; k++) {
     bytes b = {0};

@@ -28,7 +28,7 @@ static void test_collada(void **state) {
   (void)state;
   static const double bounds[6] = {0, 0, -0.04, 0.11, 0.08, 0};
   static const char *const tags[] = {"box one", "inner", NULL};
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   vxm_soup *soup = read_text(collada, "a.txt");
   assert_string_equal(soup->format, "collada");
@@ -63,7 +63,7 @@ static void test_small_formats(void **state) {
        "0.0;0.0;1.0;; " WEDGE_FACES_X " }\n}\n",
        "x", -1},
   };
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     const double bounds[6] = {5, 0, cases[i].z, 6, 1, cases[i].z + 1};
@@ -78,7 +78,7 @@ static void test_small_formats(void **state) {
 
 static void test_options(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   vxm_mesh_read_options options = VXM_MESH_READ_OPTIONS_INIT;
   vxm_error error = VXM_ERROR_INIT;
@@ -115,7 +115,7 @@ static bytes collada_bytes(void) {
 
 static void test_damage(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes dae = collada_bytes();
   damage_many(&dae, "a.dae", 40 / SLOWER);
@@ -129,7 +129,7 @@ static void test_damage(void **state) {
 
 static void test_in_process(void **state) {
   (void)state;
-  if (!has_module("assimp"))
+  if (!vxm_module_exists("assimp"))
     skip();
   bytes dae = collada_bytes();
   vxm_soup_destroy(read_in_process("assimp", "dae", &dae));

@@ -61,7 +61,7 @@ static void test_stool(void **state) {
   (void)state;
   static const char *const tags[] = {"seat", "leg#1", "leg#2", "leg#3", "leg#4", NULL};
   static const char *const names[] = {"dir/stool.step", "STOOL.STP", "stool.txt", "stool"};
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   bytes b = scene_bytes(scene_write_step);
   for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
@@ -89,7 +89,7 @@ static void test_stool(void **state) {
 static void test_deflection(void **state) {
   (void)state;
   static const double deflections[] = {0.1, 1e-3, 1e-4, 1e-5};
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   bytes b = scene_bytes(scene_write_step);
   double error_before = INFINITY;
@@ -120,7 +120,7 @@ static void test_deflection(void **state) {
 
 static void test_units(void **state) {
   (void)state;
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   bytes b = scene_bytes(scene_write_step),
         metres = replaced(&b, "SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT($,.METRE.)");
@@ -137,7 +137,7 @@ static void test_units(void **state) {
 static void test_names(void **state) {
   (void)state;
   static const char *const tags[] = {"the seat", "leg#1", "left leg", "leg#2", "M\xc3\xbcller", NULL};
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   bytes b = scene_bytes(scene_write_step);
   static const char *const changes[][2] = {
@@ -173,7 +173,7 @@ static int entity_with(const bytes *b, const char *part, int nth) {
 static void test_bodies(void **state) {
   (void)state;
   static const char *const tags[] = {"seat/plank", "seat/rod", "leg#1", "leg#2", "leg#3", "leg#4", NULL};
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   bytes b = scene_bytes(scene_write_step);
   bytes_add(&b, "", 1); /* a text for strstr */
@@ -198,7 +198,7 @@ static void test_bodies(void **state) {
 
 static void test_not_step(void **state) {
   (void)state;
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   text_fails("ISO-10303-21;\nHEADER;\n", "a.dat", "a.dat: OpenCASCADE cannot read it: ");
   text_fails("what is this\n", "a.step", "a.step: OpenCASCADE cannot read it: ");
@@ -224,7 +224,7 @@ static int stop(const char *phase, double fraction, void *payload) {
 
 static void test_cancel(void **state) {
   (void)state;
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   int calls = 0;
   vxm_context_options context_options = VXM_CONTEXT_OPTIONS_INIT;
@@ -247,7 +247,7 @@ static void test_cancel(void **state) {
 static void test_damage(void **state) {
   (void)state;
   enum { TIMES = 30 / SLOWER };
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   bytes b = scene_bytes(scene_write_step);
   damage_many(&b, "a.step", TIMES);
@@ -256,7 +256,7 @@ static void test_damage(void **state) {
 
 static void test_in_process(void **state) {
   (void)state;
-  if (!has_module("occt"))
+  if (!vxm_module_exists("occt"))
     skip();
   bytes b = scene_bytes(scene_write_step);
   for (int times = 0; times < 2; times++)

@@ -23,14 +23,6 @@ typedef struct storing {
   size_t row, rows; /**< those in `bytes`, counted over all slices of the window */
 } storing;
 
-static void store_row(unsigned char *to, const uint64_t *row, size_t count) {
-  size_t n = 0;
-  for (; n + 8 <= count; n += 8)
-    vxm_store_le64(to + n, vxm_unpack_bits(row[n / 64] >> (n % 64)));
-  for (; n < count; n++)
-    to[n] = (unsigned char)(row[n / 64] >> (n % 64) & 1);
-}
-
 static void store_rows(size_t task, int worker, void *payload) {
   (void)worker;
   const storing *s = payload;
@@ -38,8 +30,8 @@ static void store_rows(size_t task, int worker, void *payload) {
          end = begin + ROWS_PER_TASK < s->rows ? begin + ROWS_PER_TASK : s->rows;
   for (size_t r = begin; r < end; r++) {
     int64_t row = (int64_t)(s->row + r), middles = s->window->middle_dim;
-    store_row(s->bytes + r * length,
-              vxm_window_row(s->window, row % middles, s->window->begin + row / middles), length);
+    vxm_unpack_words(s->bytes + r * length,
+                     vxm_window_row(s->window, row % middles, s->window->begin + row / middles), length);
   }
 }
 

@@ -26,11 +26,6 @@ vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_sp
                             const char *data_path, const vxm_sidecar_text *text, const vxm_about *about,
                             vxm_error *error);
 
-/** Whether a reader lacked memory, whatever else it may do without. */
-static inline bool vxm_is_memory(vxm_status status) {
-  return status == VXM_ERROR_MEMORY || status == VXM_ERROR_MEMORY_LIMIT;
-}
-
 /** Whether there is a JSON file beside `data_path`. */
 bool vxm_sidecar_exists(const char *data_path);
 

@@ -111,19 +111,17 @@ static vxm_status fetch(vxm_image *image, vxm_soup *soup, vxm_references *refere
       take_refusal(image->failure, sizeof image->failure, references, before);
     return status;
   }
-  vxm_error local = VXM_ERROR_INIT;
-  image->bytes = vxm_alloc(soup->context, input.size, 1, &local);
+  image->bytes = vxm_try_alloc(soup->context, input.size, 1, &status, error);
   if (image->bytes) {
     memcpy(image->bytes, input.data, input.size);
     image->size = input.size;
-  } else
-    vxm_error_pass(error, &local);
+  }
   vxm_input_close(&input);
-  return local.code;
+  return status;
 }
 
 static bool is_fatal(vxm_status status) {
-  return status == VXM_ERROR_MEMORY || status == VXM_ERROR_MEMORY_LIMIT || status == VXM_ERROR_CANCELLED;
+  return vxm_is_memory(status) || status == VXM_ERROR_CANCELLED;
 }
 
 /** Puts the picture that the reading process has made in the place of its file. */

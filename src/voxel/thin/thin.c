@@ -241,7 +241,7 @@ static vxm_status make_order(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_
   thin->order.context = thin->context;
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = vxm_slice_order_make(&thin->order, job, &local);
-  if (status == VXM_ERROR_MEMORY || status == VXM_ERROR_MEMORY_LIMIT)
+  if (vxm_is_memory(status))
     return VXM_OK;
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
