@@ -103,13 +103,10 @@ static vxm_status copy_face(vxm_soup *soup, const vxm_mesh_arrays *arrays, int64
 static vxm_status copy_tags(vxm_soup *soup, const vxm_mesh_arrays *arrays, vxm_error *error) {
   if (arrays->tag_count == 0)
     return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  soup->face_tags = vxm_alloc(soup->context, soup->face_count, sizeof *soup->face_tags, &local);
-  if (!soup->face_tags) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
   vxm_status status = VXM_OK;
+  soup->face_tags = vxm_try_alloc(soup->context, soup->face_count, sizeof *soup->face_tags, &status, error);
+  if (!soup->face_tags)
+    return status;
   uint32_t tag;
   for (int64_t t = 0; status == VXM_OK && t < arrays->tag_count; t++) {
     const char *name = arrays->tags[t] ? arrays->tags[t] : "";
@@ -192,7 +189,7 @@ vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const
   vxm_status status = choose_read_options(&chosen, options, error);
   if (status != VXM_OK)
     return status;
-  return vxm_meshio_read_with(out, context, data, size, name ? name : "<memory>", &chosen, error);
+  return vxm_meshio_read(out, context, data, size, name ? name : "<memory>", &chosen, error);
 }
 
 vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,

@@ -132,7 +132,7 @@ static void digest_archive(run *r, batch_wanted *members, int64_t count) {
     left -= take_digest(r, members, count, &member);
     if (member.descriptor >= 0)
       close(member.descriptor);
-    batch_progress(r->tally, r->settings, 0, false);
+    batch_progress(r->tally, r->settings, 0);
   }
   batch_unpacker_end(&unpacker);
 }
@@ -356,7 +356,7 @@ void batch_link_duplicates(run *r) {
     if (is_waiting && r->manifest->items[item->original].status != BATCH_PENDING &&
         json_is_object(c.records[item->original]))
       good = finish_duplicate(r, i, c.records[item->original]);
-    batch_progress(r->tally, r->settings, 0, false);
+    batch_progress(r->tally, r->settings, 0);
   }
   for (int64_t i = 0; c.records && i < count; i++)
     json_decref(c.records[i]);

@@ -287,6 +287,6 @@ void batch_run_source(run *r, batch_source *source, void *payload, int jobs, con
     bool waits = turn == BATCH_LATER && waits_for;
     if (r->in_flight > 0 || waits)
       wait_a_while(r, waits ? *waits_for : -1, turn == BATCH_LATER);
-    batch_progress(r->tally, r->settings, r->in_flight, false);
+    batch_progress(r->tally, r->settings, r->in_flight);
   }
 }

@@ -41,11 +41,11 @@ static double seconds_left(const batch_tally *tally, double now) {
              : passed / (double)tally->fresh * (double)tally->counts[BATCH_PENDING];
 }
 
-void batch_progress(const batch_tally *tally, const batch_settings *settings, int in_flight, bool now) {
+void batch_progress(const batch_tally *tally, const batch_settings *settings, int in_flight) {
   const double step = settings->shows_progress ? 200 : 30000, clock = batch_clock_ms();
   static double shown;
   char counts[320], left[40];
-  if (settings->is_quiet || (!now && clock - (shown > 0 ? shown : tally->started_ms) < step))
+  if (settings->is_quiet || clock - (shown > 0 ? shown : tally->started_ms) < step)
     return;
   shown = clock;
   double passed = (clock - tally->started_ms) / 1000, seconds = seconds_left(tally, clock);

@@ -12,8 +12,8 @@ json_t *batch_counts_json(const int64_t counts[BATCH_STATUSES]);
 /** "3 min 20 s" */
 const char *batch_duration_text(char text[40], double seconds);
 
-/** Shows the progress, if it is time to; `now` does so anyway. */
-void batch_progress(const batch_tally *tally, const batch_settings *settings, int in_flight, bool now);
+/** Shows the progress, if it is time to. */
+void batch_progress(const batch_tally *tally, const batch_settings *settings, int in_flight);
 /** Clears the line. */
 void batch_progress_clear(const batch_settings *settings);
 

@@ -114,14 +114,6 @@ vxm_count_hash vxm_count_hash_start(const vxm_space *space) {
   return sum;
 }
 
-void vxm_count_hash_slices(vxm_count_hash *sum, const vxm_window *window, int64_t first, int64_t end,
-                           const uint64_t *before) {
-  rows r = rows_of(window, before);
-  size_t middle = (size_t)window->middle_dim;
-  vxm_count_hash_join(
-      sum, sum_rows(&r, (size_t)(first - window->begin) * middle, (size_t)(end - window->begin) * middle));
-}
-
 enum { TASKS = 256, TASK_WORDS = 1 << 13 };
 
 typedef struct sum_job {

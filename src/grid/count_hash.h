@@ -23,16 +23,12 @@ typedef struct vxm_count_hash {
 vxm_count_hash vxm_count_hash_start(const vxm_space *space);
 
 /**
- * Adds slices first..end-1, numbers of the whole space, of a window; on the calling thread alone.
+ * Adds all slices of a window on the threads of a context; the same in any number of them.
  *
  * @param sum    one that vxm_count_hash_start made, or zeros for a part to be added to such a one
- * @param before the words of slice first - 1, needed where slices run along x and it is not in the window;
- *               otherwise, and for slice 0, it is not looked at
+ * @param before the words of the slice before the window's first, where slices run along x; otherwise, and
+ *               where the first is slice 0, it is not looked at
  */
-void vxm_count_hash_slices(vxm_count_hash *sum, const vxm_window *window, int64_t first, int64_t end,
-                           const uint64_t *before);
-
-/** Adds all slices of a window on the threads of a context; the same in any number of them. */
 void vxm_count_hash_add(vxm_count_hash *sum, vxm_context *context, const vxm_window *window,
                         const uint64_t *before);
 

@@ -143,8 +143,8 @@ vxm_format_list vxm_grid_formats_holding(unsigned holds, const char *before) {
   return list_formats(holds_one, holds, before);
 }
 
-vxm_format_list vxm_grid_formats_read(const char *before) {
-  return list_formats(is_read, 0, before);
+vxm_format_list vxm_grid_formats_read(void) {
+  return list_formats(is_read, 0, ".");
 }
 
 /* ---- Reading ---- */
@@ -171,12 +171,10 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
                        "compressed by gzip: unpack it first, or read a .nii.gz from a file of that name");
   if (!format)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
-                       "not a grid: neither content nor name are those of %s",
-                       vxm_grid_formats_read(".").text);
+                       "not a grid: neither content nor name are those of %s", vxm_grid_formats_read().text);
   if (!format->read && !format->is_surface && !format->is_mesh)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
-                       ".%s is written but not read; choose %s", format->name,
-                       vxm_grid_formats_read(".").text);
+                       ".%s is written but not read; choose %s", format->name, vxm_grid_formats_read().text);
   if (!format->read)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
                        "not a grid but a mesh, by its name; voxelize it first");

@@ -181,11 +181,6 @@ static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t s
                                   &file, references, error);
 }
 
-vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
-                           const char *name, vxm_error *error) {
-  return vxm_meshio_read_with(out, context, data, size, name, NULL, error);
-}
-
 static vxm_mesh_read_options chosen_options(const vxm_mesh_read_options *options) {
   vxm_mesh_read_options chosen = VXM_MESH_READ_OPTIONS_INIT;
   if (options)
@@ -231,8 +226,8 @@ static vxm_status read_with(vxm_soup **out, vxm_context *context, const unsigned
   return VXM_OK;
 }
 
-vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
-                                const char *name, const vxm_mesh_read_options *options, vxm_error *error) {
+vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
+                           const char *name, const vxm_mesh_read_options *options, vxm_error *error) {
   *out = NULL;
   vxm_mesh_read_options chosen = chosen_options(options);
   vxm_references references = {.allowed = chosen.external, .folder = -1};

@@ -8,8 +8,8 @@
 #include "meshio/common/write_flags.h"
 
 /**
- * Reads a mesh from memory. The format is told by content first and by the extension of `name` second.
- * Text in UTF-16 with a byte order mark is read too.
+ * Reads a mesh from memory, with options; NULL means defaults. The format is told by content first and by the
+ * extension of `name` second. Text in UTF-16 with a byte order mark is read too.
  *
  * What a damaged file still holds is read; each kind of damage becomes one line of the soup's warnings with
  * the line or byte offset where it was met first.
@@ -17,21 +17,14 @@
  * @param data need not be terminated; not kept
  * @param name for messages and for its extension
  * @return VXM_OK; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond VXM_VERTICES_MAX vertices;
- *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. With our own readers memory stays
- *         below a fixed multiple of `size`, whatever the file claims.
+ *         VXM_ERROR_ARGUMENT for a format that is not known; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ *         VXM_ERROR_CANCELLED; what vxm_external_format_read returns. With our own readers memory stays below
+ *         a fixed multiple of `size`, whatever the file claims.
  */
 vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
-                           const char *name, vxm_error *error);
+                           const char *name, const vxm_mesh_read_options *options, vxm_error *error);
 
-/**
- * As vxm_meshio_read, with options; NULL means defaults.
- *
- * @return also VXM_ERROR_ARGUMENT for a format that is not known, and what vxm_external_format_read returns
- */
-vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
-                                const char *name, const vxm_mesh_read_options *options, vxm_error *error);
-
-/** As vxm_meshio_read_with, from a file; "-" is standard input. Files that the mesh refers to are those of
+/** As vxm_meshio_read, from a file; "-" is standard input. Files that the mesh refers to are those of
  * its folder, or as options->external says. @return also VXM_ERROR_IO */
 vxm_status vxm_meshio_read_file(vxm_soup **out, vxm_context *context, const char *path,
                                 const vxm_mesh_read_options *options, vxm_error *error);

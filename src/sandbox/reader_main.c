@@ -47,7 +47,7 @@ static bool fetch(void *payload, vxm_context *context, const char *name, vxm_rea
   uint64_t size;
   if (failure->code != VXM_OK || strlen(name) > VXM_WIRE_NAME_MAX)
     return false;
-  if (!vxm_wire_ask(CHANNEL, name) || !vxm_wire_get_size(CHANNEL, &size)) {
+  if (!vxm_wire_ask(CHANNEL, name) || !vxm_wire_get(CHANNEL, &size, sizeof size)) {
     cut_off(failure);
     return false;
   }
@@ -105,7 +105,8 @@ static vxm_status read_file(vxm_context *context, const vxm_reader *reader, char
   unsigned char *data;
   uint64_t size;
   vxm_error unfetched = VXM_ERROR_INIT;
-  vxm_status status = vxm_wire_get_size(CHANNEL, &size) ? take(&data, context, size, error) : cut_off(error);
+  vxm_status status =
+      vxm_wire_get(CHANNEL, &size, sizeof size) ? take(&data, context, size, error) : cut_off(error);
   if (status != VXM_OK)
     return status;
   vxm_memory_name(data, (size_t)size);

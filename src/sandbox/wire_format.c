@@ -52,10 +52,6 @@ bool vxm_wire_get(int channel, void *data, size_t size) {
   return true;
 }
 
-bool vxm_wire_get_size(int channel, uint64_t *size) {
-  return vxm_wire_get(channel, size, sizeof *size);
-}
-
 bool vxm_wire_ask(int channel, const char *name) {
   uint64_t length = strlen(name);
   return vxm_message_send_kind(channel, VXM_MESSAGE_REFERENCE) &&

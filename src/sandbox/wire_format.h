@@ -16,11 +16,9 @@ bool vxm_wire_send_warning(int channel, const char *text);
 bool vxm_wire_send_soup(int channel, const vxm_soup *soup);
 /** That a system call was tried that a reader has no business with. May be called in a signal handler. */
 bool vxm_wire_send_attempt(int channel, int64_t call);
-/** How many bytes follow. */
-bool vxm_wire_get_size(int channel, uint64_t *size);
 bool vxm_wire_get(int channel, void *data, size_t size);
-/** Asks for a file that the mesh refers to; vxm_wire_get_size gives its size, VXM_WIRE_REFUSED if it is
- * not to be had, and its bytes follow. */
+/** Asks for a file that the mesh refers to: its size comes in 64 bits, VXM_WIRE_REFUSED if it is not to be
+ * had, and then its bytes. */
 bool vxm_wire_ask(int channel, const char *name);
 
 #define VXM_WIRE_REFUSED UINT64_MAX

@@ -78,7 +78,7 @@ void fuzz_mesh(const char *name, const uint8_t *data, size_t size) {
     fuzz_require(vxm_soup_create(&soup, context, "", &error) == VXM_OK, "a soup can be made");
     status = reader(soup, data, size, "fuzz", &error);
   } else
-    status = vxm_meshio_read(&soup, context, data, size, "fuzz", &error);
+    status = vxm_meshio_read(&soup, context, data, size, "fuzz", NULL, &error);
   /* A process that reads foreign formats takes more. */
   bool is_apart = !reader && strstr(error.text, "reading takes more than");
   fuzz_require(status != VXM_ERROR_MEMORY_LIMIT || is_apart, "memory stays in proportion to the size");
@@ -111,7 +111,7 @@ void fuzz_foreign(const char *name, const uint8_t *data, size_t size) {
   vxm_soup *soup = NULL;
   vxm_error error = VXM_ERROR_INIT;
   snprintf(file, sizeof file, "<fuzz>.%s", name);
-  vxm_status status = vxm_meshio_read(&soup, context, data, size, file, &error);
+  vxm_status status = vxm_meshio_read(&soup, context, data, size, file, NULL, &error);
   fuzz_require((status == VXM_OK) == (soup != NULL), "a soup comes with success alone");
   if (status == VXM_OK)
     fuzz_check_soup(soup);

@@ -63,8 +63,12 @@ static vxm_count_hash sum_in_windows(const vxm_grid *grid, vxm_layout layout, vx
     else {
       int64_t middle = begin + (int64_t)vxm_rng_below(rng, (uint64_t)(end - begin + 1));
       vxm_count_hash part = {0, 0};
-      vxm_count_hash_slices(&part, &window, middle, end, last); /* in any order */
-      vxm_count_hash_slices(&sum, &window, begin, middle, last);
+      vxm_window first = window, second = window;
+      first.end = second.begin = middle;
+      second.words = vxm_window_row(&window, 0, middle);
+      vxm_count_hash_add(&part, context, &second,
+                         middle > begin ? vxm_window_row(&window, 0, middle - 1) : last);
+      vxm_count_hash_add(&sum, context, &first, last); /* in any order */
       vxm_count_hash_join(&sum, part);
     }
     free(before.words);

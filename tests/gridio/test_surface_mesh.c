@@ -433,7 +433,7 @@ static vxm_soup *load_mesh(vxm_context *context, const char *path) {
   unsigned char *data = load_file(path, &size);
   vxm_error error = VXM_ERROR_INIT;
   vxm_soup *soup = NULL;
-  if (vxm_meshio_read(&soup, context, data, size, path, &error) != VXM_OK)
+  if (vxm_meshio_read(&soup, context, data, size, path, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   free(data);
   return soup;

@@ -73,7 +73,7 @@ static inline vxm_soup *read_soup(vxm_context *context, const char *path) {
   if (vxm_input_open(&input, context, path, &error) != VXM_OK)
     fail_msg("%s", error.text);
   vxm_soup *soup;
-  if (vxm_meshio_read(&soup, context, input.data, input.size, path, &error) != VXM_OK)
+  if (vxm_meshio_read(&soup, context, input.data, input.size, path, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   vxm_input_close(&input);
   return soup;

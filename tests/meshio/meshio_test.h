@@ -76,7 +76,7 @@ static inline vxm_status read_bytes(vxm_soup **soup, const void *data, size_t si
   if (size > 0)
     memcpy(copy, data, size);
   *error = (vxm_error)VXM_ERROR_INIT;
-  vxm_status status = vxm_meshio_read(soup, NULL, copy, size, name, error);
+  vxm_status status = vxm_meshio_read(soup, NULL, copy, size, name, NULL, error);
   free(copy);
   assert_int_equal(status, status == VXM_OK ? VXM_OK : error->code);
   if (status == VXM_OK)

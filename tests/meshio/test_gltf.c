@@ -186,7 +186,7 @@ static void test_format(void **state) {
   vxm_soup *soup;
   bytes b = gltf("{\"mesh\":0}", TRIANGLES);
   options.format = "gltf";
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, b.data, b.size, "a", &options, &error), VXM_OK);
+  assert_int_equal(vxm_meshio_read(&soup, NULL, b.data, b.size, "a", &options, &error), VXM_OK);
   expect_counts(soup, 4, 4);
   vxm_soup_destroy(soup);
   bytes_free(&b);

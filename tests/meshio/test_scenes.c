@@ -86,23 +86,21 @@ static void test_options(void **state) {
   const unsigned char *data = (const unsigned char *)collada;
   /* The named format decides against content and name. */
   options.format = "Collada";
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.obj", &options, &error),
-                   VXM_OK);
+  assert_int_equal(vxm_meshio_read(&soup, NULL, data, strlen(collada), "a.obj", &options, &error), VXM_OK);
   vxm_soup_destroy(soup);
   options.format = "dae"; /* an extension is a name as well */
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "<stdin>", &options, &error),
-                   VXM_OK);
+  assert_int_equal(vxm_meshio_read(&soup, NULL, data, strlen(collada), "<stdin>", &options, &error), VXM_OK);
   assert_string_equal(soup->format, "collada");
   vxm_soup_destroy(soup);
   options.format = "fbx";
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
+  assert_int_equal(vxm_meshio_read(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
                    VXM_ERROR_FORMAT);
   options.format = "off";
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
+  assert_int_equal(vxm_meshio_read(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
                    VXM_ERROR_FORMAT);
   assert_null(strstr(error.text, "Assimp"));
   options.format = "word";
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
+  assert_int_equal(vxm_meshio_read(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
                    VXM_ERROR_ARGUMENT);
   assert_non_null(strstr(error.text, "mesh format \"word\" is not known"));
 }

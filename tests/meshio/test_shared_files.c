@@ -53,7 +53,7 @@ static vxm_soup *read_file(const char *file, vxm_error *error) {
   if (vxm_input_open(&input, context, path, error) != VXM_OK)
     fail_msg("%s", error->text);
   vxm_soup *soup;
-  if (vxm_meshio_read(&soup, context, input.data, input.size, path, error) != VXM_OK)
+  if (vxm_meshio_read(&soup, context, input.data, input.size, path, NULL, error) != VXM_OK)
     soup = NULL;
   else
     check_invariants(soup);

@@ -103,7 +103,7 @@ static void test_memory_limit(void **state) {
       vxm_error error = VXM_ERROR_INIT;
       assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
       vxm_status status = vxm_meshio_read(&soup, context, (const unsigned char *)forms[i].text,
-                                          strlen(forms[i].text), "a", &error);
+                                          strlen(forms[i].text), "a", NULL, &error);
       if (status == VXM_OK)
         expect_counts(soup, 3, 1);
       else
@@ -138,7 +138,8 @@ static void test_cancel(void **state) {
     vxm_soup *soup;
     vxm_error error = VXM_ERROR_INIT;
     assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
-    assert_int_equal(vxm_meshio_read(&soup, context, b.data, b.size, "a.off", &error), VXM_ERROR_CANCELLED);
+    assert_int_equal(vxm_meshio_read(&soup, context, b.data, b.size, "a.off", NULL, &error),
+                     VXM_ERROR_CANCELLED);
     assert_null(soup);
     assert_int_equal(left, -1);
     vxm_context_destroy(context);
@@ -154,8 +155,8 @@ static bool is_format_name(const char *word) {
   vxm_error error = VXM_ERROR_INIT;
   vxm_soup *soup;
   options.format = word;
-  vxm_status status = vxm_meshio_read_with(&soup, NULL, (const unsigned char *)nonsense, strlen(nonsense),
-                                           "<stdin>", &options, &error);
+  vxm_status status = vxm_meshio_read(&soup, NULL, (const unsigned char *)nonsense, strlen(nonsense),
+                                      "<stdin>", &options, &error);
   assert_int_not_equal(status, VXM_OK);
   return status != VXM_ERROR_ARGUMENT;
 }

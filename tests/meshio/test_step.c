@@ -34,7 +34,7 @@ static vxm_soup *read_with(const bytes *b, const char *name, double deflection) 
   vxm_error error = VXM_ERROR_INIT;
   vxm_soup *soup;
   options.deflection = deflection;
-  if (vxm_meshio_read_with(&soup, NULL, b->data, b->size, name, &options, &error) != VXM_OK)
+  if (vxm_meshio_read(&soup, NULL, b->data, b->size, name, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   check_invariants(soup);
   return soup;
@@ -208,10 +208,10 @@ static void test_not_step(void **state) {
   vxm_soup *soup;
   bytes b = scene_bytes(scene_write_step);
   options.format = "step";
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, b.data, b.size, "a.off", &options, &error), VXM_OK);
+  assert_int_equal(vxm_meshio_read(&soup, NULL, b.data, b.size, "a.off", &options, &error), VXM_OK);
   vxm_soup_destroy(soup);
   options.format = "iges";
-  assert_int_equal(vxm_meshio_read_with(&soup, NULL, b.data, b.size, "a.step", &options, &error),
+  assert_int_equal(vxm_meshio_read(&soup, NULL, b.data, b.size, "a.step", &options, &error),
                    VXM_ERROR_FORMAT);
   bytes_free(&b);
 }
@@ -237,7 +237,7 @@ static void test_cancel(void **state) {
   vxm_soup *soup;
   bytes b = scene_bytes(scene_write_step);
   assert_int_equal(vxm_context_create(&context, &context_options, NULL), VXM_OK);
-  assert_int_equal(vxm_meshio_read_with(&soup, context, b.data, b.size, "a.step", &options, &error),
+  assert_int_equal(vxm_meshio_read(&soup, context, b.data, b.size, "a.step", &options, &error),
                    VXM_ERROR_CANCELLED);
   assert_null(soup);
   vxm_context_destroy(context);

@@ -22,7 +22,7 @@ static vxm_soup *read_file(const files *f, const char *path) {
   vxm_input input;
   vxm_soup *soup;
   assert_int_equal(vxm_input_open(&input, f->context, path, NULL), VXM_OK);
-  assert_int_equal(vxm_meshio_read(&soup, f->context, input.data, input.size, path, NULL), VXM_OK);
+  assert_int_equal(vxm_meshio_read(&soup, f->context, input.data, input.size, path, NULL, NULL), VXM_OK);
   vxm_input_close(&input);
   return soup;
 }

@@ -495,7 +495,7 @@ static vxm_soup *read_text(const void *data, size_t size, const char *name) {
   vxm_soup *soup;
   vxm_error error = VXM_ERROR_INIT;
   options.colors = true;
-  if (vxm_meshio_read_with(&soup, NULL, data, size, name, &options, &error) != VXM_OK)
+  if (vxm_meshio_read(&soup, NULL, data, size, name, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_non_null(soup->appearance);
   return soup;

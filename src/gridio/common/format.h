@@ -122,7 +122,7 @@ typedef struct vxm_format_list {
 /** All formats that hold one of these, such as ".npy, .nrrd or .vdb"; `before` stands before each name. */
 vxm_format_list vxm_grid_formats_holding(unsigned holds, const char *before);
 /** Those that can be read. */
-vxm_format_list vxm_grid_formats_read(const char *before);
+vxm_format_list vxm_grid_formats_read(void);
 
 /** Whether bits are written slice by slice. */
 static inline bool vxm_grid_format_streams(const vxm_grid_format *format) {

@@ -16,13 +16,14 @@ static bool has_at(const unsigned char *data, size_t size, size_t at, const char
 }
 
 /** Whether a text stands within the first or the last bytes of the file. */
-static bool has_near_ends(const unsigned char *data, size_t size, size_t reach, const char *text) {
-  size_t near = size < reach ? size : reach, length = strlen(text);
+static bool has_near_ends(const unsigned char *data, size_t size, const char *text) {
+  const size_t reach = 65536, near = size < reach ? size : reach, length = strlen(text);
   return memmem(data, near, text, length) != NULL || memmem(data + size - near, near, text, length) != NULL;
 }
 
-static bool has_within(const unsigned char *data, size_t size, size_t reach, const char *text) {
-  return memmem(data, size < reach ? size : reach, text, strlen(text)) != NULL;
+static bool has_in_head(const unsigned char *data, size_t size, const char *text) {
+  const size_t head = 4096;
+  return memmem(data, size < head ? size : head, text, strlen(text)) != NULL;
 }
 
 static unsigned char first_letter(const unsigned char *data, size_t size) {
@@ -32,32 +33,30 @@ static unsigned char first_letter(const unsigned char *data, size_t size) {
   return at < size ? data[at] : 0;
 }
 
-enum { HEAD = 4096, REACH = 65536 };
-
 static bool is_glb(const unsigned char *data, size_t size) {
   return has_at(data, size, 0, "glTF");
 }
 
 static bool is_gltf(const unsigned char *data, size_t size) {
-  return first_letter(data, size) == '{' && has_near_ends(data, size, REACH, "\"asset\"") &&
-         has_near_ends(data, size, REACH, "\"version\"");
+  return first_letter(data, size) == '{' && has_near_ends(data, size, "\"asset\"") &&
+         has_near_ends(data, size, "\"version\"");
 }
 
 /** A zip archive whose directory, at the end, names the model. */
 static bool is_3mf(const unsigned char *data, size_t size) {
-  return has_at(data, size, 0, "PK\x03\x04") && has_near_ends(data, size, REACH, ".model");
+  return has_at(data, size, 0, "PK\x03\x04") && has_near_ends(data, size, ".model");
 }
 
 static bool is_collada(const unsigned char *data, size_t size) {
-  return first_letter(data, size) == '<' && has_within(data, size, HEAD, "<COLLADA");
+  return first_letter(data, size) == '<' && has_in_head(data, size, "<COLLADA");
 }
 
 static bool is_x3d(const unsigned char *data, size_t size) {
-  return first_letter(data, size) == '<' && has_within(data, size, HEAD, "<X3D");
+  return first_letter(data, size) == '<' && has_in_head(data, size, "<X3D");
 }
 
 static bool is_amf(const unsigned char *data, size_t size) {
-  return first_letter(data, size) == '<' && has_within(data, size, HEAD, "<amf");
+  return first_letter(data, size) == '<' && has_in_head(data, size, "<amf");
 }
 
 static bool is_fbx(const unsigned char *data, size_t size) {
@@ -93,7 +92,7 @@ static bool is_part21(const unsigned char *data, size_t size) {
 
 /** Buildings are STEP files of another schema, which OpenCASCADE does not know. */
 static bool is_ifc(const unsigned char *data, size_t size) {
-  return is_part21(data, size) && has_within(data, size, HEAD, "('IFC");
+  return is_part21(data, size) && has_in_head(data, size, "('IFC");
 }
 
 /** Lines of 80 columns, of which the first bears the mark of the start section in column 73. */

@@ -50,8 +50,8 @@ static vxm_status find_space(loaded *l, const vxm_input *input, vxm_error *error
   const vxm_block_file *file = &l->file;
   double numbers[6];
   bool is_own = file->is_own && vxm_nbt_find_integer(&up, &file->own, "Up") && up >= 0 && up <= 2 &&
-                vxm_nbt_find_doubles(numbers, &file->own, "Origin", 3) &&
-                vxm_nbt_find_doubles(numbers + 3, &file->own, "VoxelSize", 3);
+                vxm_nbt_find_triple(numbers, &file->own, "Origin") &&
+                vxm_nbt_find_triple(numbers + 3, &file->own, "VoxelSize");
   l->axes = vxm_y_up_of(is_own ? (int)up + 1 : 0);
   for (int a = 0; a < 3; a++) {
     int of = l->axes.of[a];

@@ -344,8 +344,8 @@ void vxm_blocks_put_metadata(vxm_nbt_writer *writer, const vxm_blocks *blocks) {
   vxm_nbt_string(writer, "Values",
                  blocks->kind == VXM_FIELD_NUMBERS ? "bits" : vxm_field_kind_name(blocks->kind));
   vxm_nbt_integer(writer, VXM_NBT_BYTE, "Up", blocks->axes.up);
-  vxm_nbt_doubles(writer, "Origin", blocks->field->space.origin, 3);
-  vxm_nbt_doubles(writer, "VoxelSize", blocks->field->space.voxel_size, 3);
+  vxm_nbt_triple(writer, "Origin", blocks->field->space.origin);
+  vxm_nbt_triple(writer, "VoxelSize", blocks->field->space.voxel_size);
   if (blocks->kind == VXM_FIELD_LABELS)
     put_labels(writer, blocks);
   vxm_nbt_end(writer);

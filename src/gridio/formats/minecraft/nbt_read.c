@@ -220,11 +220,11 @@ bool vxm_nbt_find_integer(int64_t *out, const vxm_nbt_value *compound, const cha
   return true;
 }
 
-bool vxm_nbt_find_doubles(double *out, const vxm_nbt_value *compound, const char *name, size_t count) {
+bool vxm_nbt_find_triple(double out[3], const vxm_nbt_value *compound, const char *name) {
   vxm_nbt_value list, item;
   const unsigned char *at = NULL;
   if (!vxm_nbt_find(&list, compound, name, VXM_NBT_LIST) || list.at[0] != VXM_NBT_DOUBLE ||
-      vxm_nbt_count(&list) != count)
+      vxm_nbt_count(&list) != 3)
     return false;
   while (vxm_nbt_next_item(&at, &list, &item)) {
     uint64_t bits = vxm_nbt_load_number(item.at, 8);

@@ -35,8 +35,8 @@ void vxm_nbt_destroy(vxm_nbt *tree);
 bool vxm_nbt_find(vxm_nbt_value *out, const vxm_nbt_value *compound, const char *name, vxm_nbt_type type);
 /** A whole number of any type by name. */
 bool vxm_nbt_find_integer(int64_t *out, const vxm_nbt_value *compound, const char *name);
-/** A list of so many doubles by name. */
-bool vxm_nbt_find_doubles(double *out, const vxm_nbt_value *compound, const char *name, size_t count);
+/** A list of three doubles by name. */
+bool vxm_nbt_find_triple(double out[3], const vxm_nbt_value *compound, const char *name);
 
 /** Walks the children of a compound: `at` begins as its `at`; false behind the last. The name is no C text.
  */

@@ -148,9 +148,9 @@ void vxm_nbt_list(vxm_nbt_writer *writer, const char *name, vxm_nbt_type of, siz
   vxm_nbt_number(writer, count, 4);
 }
 
-void vxm_nbt_doubles(vxm_nbt_writer *writer, const char *name, const double *values, size_t count) {
-  vxm_nbt_list(writer, name, VXM_NBT_DOUBLE, count);
-  for (size_t v = 0; v < count; v++) {
+void vxm_nbt_triple(vxm_nbt_writer *writer, const char *name, const double values[3]) {
+  vxm_nbt_list(writer, name, VXM_NBT_DOUBLE, 3);
+  for (int v = 0; v < 3; v++) {
     uint64_t bits;
     memcpy(&bits, &values[v], sizeof bits);
     vxm_nbt_number(writer, bits, 8);

@@ -26,7 +26,8 @@ void vxm_nbt_text(vxm_nbt_writer *writer, const char *text);
 void vxm_nbt_string(vxm_nbt_writer *writer, const char *name, const char *text);
 /** @param type VXM_NBT_BYTE to VXM_NBT_LONG */
 void vxm_nbt_integer(vxm_nbt_writer *writer, vxm_nbt_type type, const char *name, int64_t value);
-void vxm_nbt_doubles(vxm_nbt_writer *writer, const char *name, const double *values, size_t count);
+/** A list of three doubles. */
+void vxm_nbt_triple(vxm_nbt_writer *writer, const char *name, const double values[3]);
 /** What stands before the elements of a list. */
 void vxm_nbt_list(vxm_nbt_writer *writer, const char *name, vxm_nbt_type of, size_t count);
 /** Ends a compound. */
