@@ -29,7 +29,5 @@ vxm_status vxm_message_damaged(vxm_error *error) {
 
 void vxm_message_sanitize(char *text, size_t size) {
   text[size - 1] = '\0';
-  for (; *text; text++)
-    if ((unsigned char)*text < ' ')
-      *text = ' ';
+  vxm_make_printable(text);
 }

@@ -32,7 +32,7 @@ bool vxm_message_send_kind(int channel, vxm_message_kind kind);
 
 /** VXM_ERROR_FORMAT for what no sound reader sends. */
 vxm_status vxm_message_damaged(vxm_error *error);
-/** Ends a text that was received, and keeps it to one line. */
+/** Ends a text that was received, and makes it printable. */
 void vxm_message_sanitize(char *text, size_t size);
 
 #endif

@@ -14,6 +14,7 @@
 #include "config.h"
 #include "sandbox/reader_process.h"
 #include "sandbox/wire_format.h"
+#include "sandbox/wire_message.h"
 
 static const vxm_module_need need = {"ill", "none", "reading .ill files"};
 
@@ -92,6 +93,13 @@ static void test_failures(void **state) {
   assert_int_equal(ask(&soup, NULL, "print", 5, &error), VXM_OK);
   expect_counts(soup, 7, 5);
   vxm_soup_destroy(soup);
+}
+
+static void test_sanitize(void **state) {
+  (void)state;
+  char text[] = {'a', '\t', '\x7f', 'b', '\xc3', '\xa4', 'c'};
+  vxm_message_sanitize(text, sizeof text);
+  assert_string_equal(text, "a??b\xc3\xa4");
 }
 
 static void test_missing(void **state) {
@@ -393,13 +401,19 @@ static void test_ignored_children(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_soup),       cmocka_unit_test(test_failures),
-      cmocka_unit_test(test_missing),    cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_cancel),     cmocka_unit_test(test_time),
-      cmocka_unit_test(test_no_program), cmocka_unit_test(test_ignored_children),
-      cmocka_unit_test(test_attempts),   cmocka_unit_test(test_surroundings),
-      cmocka_unit_test(test_references), cmocka_unit_test(test_relative_modules)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_soup),
+                                     cmocka_unit_test(test_failures),
+                                     cmocka_unit_test(test_sanitize),
+                                     cmocka_unit_test(test_missing),
+                                     cmocka_unit_test(test_memory),
+                                     cmocka_unit_test(test_cancel),
+                                     cmocka_unit_test(test_time),
+                                     cmocka_unit_test(test_no_program),
+                                     cmocka_unit_test(test_ignored_children),
+                                     cmocka_unit_test(test_attempts),
+                                     cmocka_unit_test(test_surroundings),
+                                     cmocka_unit_test(test_references),
+                                     cmocka_unit_test(test_relative_modules)};
   leave_signals_alone();
   alarm(100);
   return cmocka_run_group_tests(tests, NULL, NULL);
