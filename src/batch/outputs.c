@@ -26,51 +26,66 @@ static int is_shown(const struct dirent *entry) {
   return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0; /* .zarray is a part */
 }
 
-/** "NAME DIGEST" of each file, a line each, to be freed; NULL with errno. */
-static char *list_folder(const char *path, int64_t *files, uint64_t *bytes) {
+static bool is_directory(const char *path) {
+  struct stat info;
+  return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+static bool digest_any(char out[BATCH_DIGEST], int64_t *files, uint64_t *bytes, const char *path);
+
+/** Digest of the lines "NAME DIGEST" of all that is in it; false with errno. */
+static bool digest_folder(char out[BATCH_DIGEST], int64_t *files, uint64_t *bytes, const char *path) {
   struct dirent **entries = NULL;
   char *text = NULL;
   size_t size = 0;
   int count = scandir(path, &entries, is_shown, by_name);
   FILE *list = count >= 0 ? open_memstream(&text, &size) : NULL;
+  bool good = list != NULL;
+  int reason = errno;
   for (int e = 0; e < count; e++) {
-    char digest[BATCH_DIGEST] = "", *inner = path_of(path, entries[e]->d_name);
-    uint64_t length = 0;
-    if (list && inner && batch_digest_file(digest, &length, inner))
+    char digest[BATCH_DIGEST], *inner = good ? path_of(path, entries[e]->d_name) : NULL;
+    if (inner && digest_any(digest, files, bytes, inner))
       fprintf(list, "%s %s\n", entries[e]->d_name, digest);
-    *bytes += length;
+    else if (good) {
+      good = false;
+      reason = errno;
+    }
     free(inner);
     free(entries[e]);
   }
   free(entries);
-  *files = count;
-  if (list && fclose(list) == 0)
-    return text;
+  if (list && fclose(list) != 0 && good) {
+    good = false;
+    reason = errno;
+  }
+  if (good)
+    batch_digest(out, text, strlen(text));
   free(text);
-  return NULL;
+  errno = reason;
+  return good;
 }
 
-static json_t *describe_folder(const char *path, const char *name) {
-  char digest[BATCH_DIGEST];
-  int64_t files = 0;
-  uint64_t bytes = 0;
-  char *list = list_folder(path, &files, &bytes);
-  if (!list)
-    return NULL;
-  batch_digest(digest, list, strlen(list));
-  free(list);
-  return json_pack("{s:o, s:I, s:I, s:s}", "path", batch_json_string(name), "files", (json_int_t)files,
-                   "bytes", (json_int_t)bytes, "sha256", digest);
+/** Digest of a file or folder, whose files and bytes are added. */
+static bool digest_any(char out[BATCH_DIGEST], int64_t *files, uint64_t *bytes, const char *path) {
+  if (is_directory(path))
+    return digest_folder(out, files, bytes, path);
+  uint64_t length = 0;
+  bool good = batch_digest_file(out, &length, path);
+  *files += good;
+  *bytes += length;
+  return good;
 }
 
 json_t *batch_output_describe(const char *output, const char *name) {
   char digest[BATCH_DIGEST], *path = path_of(output, name);
-  uint64_t bytes;
-  struct stat info;
+  int64_t files = 0;
+  uint64_t bytes = 0;
   json_t *described = NULL;
-  if (path && stat(path, &info) == 0 && S_ISDIR(info.st_mode))
-    described = describe_folder(path, name);
-  else if (path && batch_digest_file(digest, &bytes, path))
+  bool folder = path && is_directory(path);
+  if (folder && digest_folder(digest, &files, &bytes, path))
+    described = json_pack("{s:o, s:I, s:I, s:s}", "path", batch_json_string(name), "files", (json_int_t)files,
+                          "bytes", (json_int_t)bytes, "sha256", digest);
+  else if (path && !folder && batch_digest_file(digest, &bytes, path))
     described = json_pack("{s:o, s:I, s:s}", "path", batch_json_string(name), "bytes", (json_int_t)bytes,
                           "sha256", digest);
   int reason = errno;

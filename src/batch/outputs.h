@@ -7,7 +7,7 @@
 
 /**
  * Describes an output: {"path", "bytes", "sha256"}, of a folder with "files" too, and the digest of all names
- * and digests in it. NULL with errno if it is not there.
+ * and digests in it. NULL with errno if it is not there, or not all of it can be read.
  */
 json_t *batch_output_describe(const char *output, const char *name);
 /** Whether an output that was described so is there, as far as can be seen without reading it. */

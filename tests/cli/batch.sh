@@ -220,6 +220,9 @@ mkdir latin
 cp in/cube.off "latin/$(printf 'st\374hl.off')"
 run 'voxmend batch latin -o latin-out -r 8 --pictures 0; cut -f 1-4 latin-out/failures.tsv'
 run 'voxmend batch clash/a.off -o many -r 4 --augment "-n 1200 -r 4" --pictures 0 && voxmend batch verify many && ls many/clash/a.variants | wc -l'
+# What cannot be read within a folder is told, not passed over.
+run 'voxmend batch data/a/cube.off -o chunks -r 8 --format zarr --pictures 0 && voxmend batch verify chunks'
+run 'find chunks -name 0.0.0 -exec ln -sf nowhere "{}" ";" && voxmend batch verify chunks'
 # What is refused before anything is made.
 run 'voxmend batch data'
 run 'voxmend batch -o grids'
