@@ -3,6 +3,7 @@
 
 #include "base/box.h"
 #include "mesh/box_tree.h"
+#include "mesh/face_points.h"
 #include "mesh/geometry.h"
 #include "mesh/nonfinite.h"
 #include "mesh/point_in_mesh.h"
@@ -11,8 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { SAMPLES = 3 /**< points per component */ };
 
 /* A cavity may touch the skin around it where the skin reaches farthest, and then have its box in common with
    it; and its faces may lie on those of the skin. Once vertices that touch have been moved apart, or rounded,
@@ -25,6 +24,12 @@ static const double LEEWAY = 1e-4, LEEWAY_UNITS = 16, LEEWAY_MOST = 1.0 / 64;
 /** Bits of the sizes of boxes, and of volumes, where those of one body are told to be larger than those of
  * another in spite of that. */
 enum { SIZE_BITS = 10, VOLUME_BITS = 3 };
+
+/** Points on a component to see whether all of it lies in another one; few, once many were taken in all. */
+enum { POINTS = 512, POINTS_FEW = 64, POINTS_IN_ALL = 1 << 18 };
+
+/** Such a part of them may lie outside: there faces are missing. */
+static const double OUTSIDE_MAX = 1.0 / 1024;
 
 /** Two that lie on each other, with volumes that differ by less than that, may be one that was drawn twice.
  */
@@ -47,15 +52,17 @@ typedef struct builder {
   vxm_error error;
   size_t count;
   vxm_unit_scale frame;
-  double bounds[6]; /**< scaled */
-  double leeway;    /**< scaled: how far a box may reach out of that around it */
-  body *bodies;     /**< per component, and one more that ends the last one's faces */
-  size_t *faces;    /**< grouped by component */
-  uint32_t *order;  /**< solid components by increasing box */
+  double bounds[6];     /**< scaled */
+  double leeway;        /**< scaled: how far a box may reach out of that around it */
+  const double *volume; /**< per component, signed */
+  body *bodies;         /**< per component, and one more that ends the last one's faces */
+  size_t *faces;        /**< grouped by component */
+  uint32_t *order;      /**< solid components by increasing box */
   size_t order_count;
   double (*boxes)[6];         /**< in that order */
   vxm_box_tree around;        /**< of them */
   vxm_point_in_mesh **inside; /**< per component, NULL until asked */
+  uint64_t points;            /**< that were taken by measure_outside so far */
 } builder;
 
 static void *allocate(builder *b, size_t count, size_t size) {
@@ -226,38 +233,12 @@ static bool list_candidates(builder *b) {
 
 /* ---- Containment ---- */
 
-typedef struct sample {
-  double point[3];
-  int axis; /**< along which its face lies least */
-} sample;
-
-static int axis_across(const builder *b, const uint32_t *corner, size_t count) {
-  vxm_vec3 area = vxm_polygon_area(b->soup->positions, corner, count, b->frame.scale);
-  double x = fabs(area.x), y = fabs(area.y), z = fabs(area.z);
-  return z >= x && z >= y ? 2 : y >= x ? 1 : 0;
-}
-
-/** A point on a face of the component, off the lines on which edges use to lie. The same if the face is
- * reversed about its first corner: turning faces must not change what lies inside what. */
-static bool take_sample(const builder *b, uint32_t component, int number, sample *out) {
-  static const double weights[SAMPLES] = {0.35355339, 0.31415927, 0.33873241}; /* of the first corner */
-  size_t first = b->bodies[component].first, faces = b->bodies[component + 1].first - first;
-  size_t start = faces * (2 * (size_t)number + 1) / (2 * SAMPLES);
-  for (size_t i = 0; i < faces; i++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(b->soup, b->faces[first + (start + i) % faces], &count);
-    if (count < 3 || !vxm_face_is_finite(b->soup, corner, count))
-      continue;
-    const double *p = vxm_position(b->soup, corner[0]), *q = vxm_position(b->soup, corner[1]);
-    const double *r = vxm_position(b->soup, corner[count - 1]);
-    for (int a = 0; a < 3; a++) {
-      double x = p[a] * b->frame.scale, y = q[a] * b->frame.scale, z = r[a] * b->frame.scale;
-      out->point[a] = vxm_between_three(weights[number] * x + (1 - weights[number]) / 2 * (y + z), x, y, z);
-    }
-    out->axis = axis_across(b, corner, count);
-    return true;
-  }
-  return false;
+static vxm_face_list faces_of(const builder *b, uint32_t component) {
+  size_t first = b->bodies[component].first;
+  return (vxm_face_list){.soup = b->soup,
+                         .faces = b->faces + first,
+                         .count = b->bodies[component + 1].first - first,
+                         .scale = b->frame.scale};
 }
 
 static vxm_point_in_mesh *inside_of(builder *b, uint32_t component) {
@@ -265,11 +246,9 @@ static vxm_point_in_mesh *inside_of(builder *b, uint32_t component) {
   if (!inside)
     inside = b->inside[component] = allocate(b, 1, sizeof *inside);
   if (inside && !inside->soup) {
-    size_t first = b->bodies[component].first;
-    *inside = (vxm_point_in_mesh){.soup = b->soup,
-                                  .faces = b->faces + first,
-                                  .face_count = b->bodies[component + 1].first - first,
-                                  .scale = b->frame.scale};
+    vxm_face_list list = faces_of(b, component);
+    *inside = (vxm_point_in_mesh){
+        .soup = b->soup, .faces = list.faces, .face_count = list.count, .scale = b->frame.scale};
     memcpy(inside->box, b->bodies[component].box, sizeof inside->box);
   }
   return inside;
@@ -277,7 +256,7 @@ static vxm_point_in_mesh *inside_of(builder *b, uint32_t component) {
 
 /** Where a sample of the inner one lies on faces of the outer one rays go wrong: then it is moved into the
  * inner one. */
-static vxm_status clear_sample(builder *b, uint32_t outer, uint32_t inner, sample *s) {
+static vxm_status clear_sample(builder *b, uint32_t outer, uint32_t inner, vxm_face_sample *s) {
   if (!(b->bodies[inner].volume < SMALLER * b->bodies[outer].volume))
     return VXM_OK;
   bool on_face = false;
@@ -294,11 +273,12 @@ static vxm_status clear_sample(builder *b, uint32_t outer, uint32_t inner, sampl
 }
 
 /** The samples that there are of the inner one; *count: how many. */
-static vxm_status take_samples(builder *b, uint32_t outer, uint32_t inner, sample samples[SAMPLES],
-                               int *count) {
+static vxm_status take_samples(builder *b, uint32_t outer, uint32_t inner,
+                               vxm_face_sample samples[VXM_FACE_SAMPLES], int *count) {
+  vxm_face_list list = faces_of(b, inner);
   *count = 0;
-  for (int s = 0; s < SAMPLES; s++) {
-    if (!take_sample(b, inner, s, &samples[*count]))
+  for (int s = 0; s < VXM_FACE_SAMPLES; s++) {
+    if (!vxm_face_sample_take(&list, s, &samples[*count]))
       continue;
     vxm_status status = clear_sample(b, outer, inner, &samples[(*count)++]);
     if (status != VXM_OK)
@@ -315,28 +295,32 @@ static bool fits(const body *outer, const body *inner) {
   return inner->size < outer->size;
 }
 
-/** By the rays along z if they are all of one mind, else by half of those along all axes; by all of them
- * where boxes alone would say no. */
+/** By a few samples; where boxes alone would say no, all of them have to agree. */
 static vxm_status contains(builder *b, uint32_t outer, uint32_t inner, bool *result) {
   vxm_point_in_mesh *inside = inside_of(b, outer);
   if (!inside)
     return b->error.code;
-  sample samples[SAMPLES];
-  bool all = !fits(&b->bodies[outer], &b->bodies[inner]);
-  int count, rays = 0, votes = 0;
+  vxm_face_sample samples[VXM_FACE_SAMPLES];
+  int count;
   vxm_status status = take_samples(b, outer, inner, samples, &count);
-  for (int axis = 2; axis >= 0 && status == VXM_OK; axis--) {
-    for (int s = 0; s < count && status == VXM_OK; s++) {
-      int more;
-      status = vxm_point_in_mesh_surrounds(inside, samples[s].point, axis, &more, &b->error);
-      rays += 2;
-      votes += more;
-    }
-    if (all ? votes < rays : votes == 0 || votes == rays)
-      break;
-  }
-  /* a missing face turns a ray that should be odd; outside, most rays cross nothing that could be missing */
-  *result = rays > 0 && (all ? votes == rays : 2 * votes >= rays);
+  bool all = !fits(&b->bodies[outer], &b->bodies[inner]);
+  return status == VXM_OK ? vxm_face_samples_vote(inside, samples, count, all, result, &b->error) : status;
+}
+
+static bool is_against(const builder *b, uint32_t p, uint32_t q) {
+  return (b->volume[p] < 0 && b->volume[q] > 0) || (b->volume[p] > 0 && b->volume[q] < 0);
+}
+
+/** Which part of the inner one, which may be a void, reaches out of a body that it may be a void of. */
+static vxm_status measure_outside(builder *b, uint32_t outer, uint32_t inner, double *part) {
+  size_t wanted = b->points < POINTS_IN_ALL ? POINTS : POINTS_FEW;
+  vxm_face_list list = faces_of(b, inner);
+  vxm_points_outside found = {0};
+  vxm_status status = VXM_OK;
+  if (is_against(b, outer, inner))
+    status = vxm_face_points_outside(b->inside[outer], &list, b->leeway, wanted, &found, &b->error);
+  b->points += found.points;
+  *part = found.points > 0 ? (double)found.outside / (double)found.points : 0;
   return status;
 }
 
@@ -375,27 +359,43 @@ static void search_around(builder *b, uint32_t component) {
 /**
  * Finds the components around another one, the smallest ones first.
  *
+ * A void may be cut out of a body that is around all of it, and only crosses others: where there is a choice,
+ * those go that it reaches out of. If it reaches out of all, of whichever set, one is left that it does so
+ * least.
+ *
  * @param own_set only those of the component's set come into question
  * @param most    so many of them will do
  */
 static vxm_status find_around(builder *b, uint32_t component, bool own_set, uint32_t *around, size_t most,
                               size_t *count) {
+  double least = INFINITY;
+  uint32_t nearest = VXM_NO_COMPONENT;
   search_around(b, component);
   *count = 0;
-  for (int tries = 0, looks = 0; tries < TRIES_MAX && looks < 16 * TRIES_MAX && *count < most; looks++) {
-    uint32_t place = vxm_box_tree_next(&b->around);
-    if (place == VXM_NO_BOX)
-      break;
-    if (own_set && set_of(b, b->order[place]) != set_of(b, component))
+  uint32_t next = vxm_box_tree_next(&b->around);
+  for (int tries = 0, looks = 0;
+       next != VXM_NO_BOX && tries < TRIES_MAX && looks < 16 * TRIES_MAX && *count < most; looks++) {
+    uint32_t other = b->order[next];
+    next = vxm_box_tree_next(&b->around);
+    if (own_set && set_of(b, other) != set_of(b, component))
       continue;
-    bool within = false;
+    bool within = false, choice = looks > 0 || next != VXM_NO_BOX;
+    double outside = 0;
     tries++;
-    vxm_status status = contains(b, b->order[place], component, &within);
+    vxm_status status = contains(b, other, component, &within);
+    if (status == VXM_OK && within && choice)
+      status = measure_outside(b, other, component, &outside);
     if (status != VXM_OK)
       return status;
-    if (within)
-      around[(*count)++] = b->order[place];
+    if (within && outside <= OUTSIDE_MAX)
+      around[(*count)++] = other;
+    else if (within && outside < least) {
+      least = outside;
+      nearest = other;
+    }
   }
+  if (*count == 0 && nearest != VXM_NO_COMPONENT && !own_set)
+    around[(*count)++] = nearest;
   return VXM_OK;
 }
 
@@ -474,6 +474,7 @@ static bool run(builder *b, vxm_containment *out) {
   b->bodies = allocate(b, b->count + 1, sizeof *b->bodies);
   if (!out->parent || !out->body || !out->volume || !b->bodies || !measure_bodies(b))
     return false;
+  b->volume = out->volume;
   scale_boxes(b);
   for (size_t i = 0; i < b->count; i++)
     out->parent[i] = out->body[i] = VXM_NO_COMPONENT;

@@ -30,7 +30,9 @@ typedef struct vxm_containment {
  * A component lies inside another one if its box does and if most of a few sample points do, by crossings of
  * rays along the axes, which are odd, or wind round the point, so that a few missing or turned faces do no
  * harm; if its box reaches out by as little as vertices are moved apart by, all rays have to say so. The
- * points lie on its faces, or within it where these lie on faces of the other one.
+ * points lie on its faces, or within it where these lie on faces of the other one. Where boxes of several are
+ * around that of one that is wound the other way, and so may be a void, many points are taken: it lies in
+ * those that it does not reach out of, or, if there are none, in the one that it reaches out of least.
  */
 vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, const uint32_t *face_labels,
                                  size_t count, const uint8_t *solid, vxm_error *error);

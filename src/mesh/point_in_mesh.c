@@ -2,6 +2,7 @@
 #include "mesh/point_in_mesh.h"
 
 #include "base/box.h"
+#include "base/hash.h"
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
 
@@ -262,6 +263,33 @@ void vxm_point_in_mesh_find_box(vxm_point_in_mesh *inside) {
         inside->box[a + 3] = fmax(inside->box[a + 3], x);
       }
   }
+}
+
+/** The sides of a face by hashes of their edges: those of an edge with an even number of sides cancel. */
+static uint64_t hash_of_sides(const uint32_t *corner, size_t count) {
+  uint64_t sum = 0;
+  for (size_t c = 0; c < count; c++) {
+    uint64_t a = corner[c], b = corner[c + 1 < count ? c + 1 : 0];
+    if (a != b)
+      sum ^= vxm_hash_word(0, a < b ? a << 32 | b : b << 32 | a);
+  }
+  return sum;
+}
+
+vxm_status vxm_point_in_mesh_is_closed(vxm_point_in_mesh *inside, bool *result, vxm_error *error) {
+  uint64_t odd = 0;
+  for (size_t i = 0; i < inside->face_count && inside->closed == 0; i++) {
+    size_t count;
+    vxm_status status = vxm_check_cancelled_at(i, inside->soup->context, error);
+    if (status != VXM_OK)
+      return status;
+    const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);
+    odd ^= hash_of_sides(corner, count);
+  }
+  if (inside->closed == 0)
+    inside->closed = odd == 0 ? 1 : -1;
+  *result = inside->closed > 0;
+  return VXM_OK;
 }
 
 vxm_status vxm_point_in_mesh_vote(vxm_point_in_mesh *inside, const double point[3], int axis, int *votes,

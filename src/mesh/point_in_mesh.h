@@ -26,9 +26,12 @@ typedef struct vxm_point_in_mesh {
   double scale;  /**< of all positions, see vxm_unit_scale */
   double box[6]; /**< x0 y0 z0 x1 y1 z1 of the faces, scaled */
   vxm_point_in_mesh_bins bins[3];
-  size_t tests; /**< of triangles with lines so far */
+  size_t tests;  /**< of triangles with lines so far */
+  int8_t closed; /**< 1 = is closed, -1 = is open, 0 = not asked so far */
 } vxm_point_in_mesh;
 
+/** Whether every edge has an even number of the faces. The first call takes time linear in their corners. */
+vxm_status vxm_point_in_mesh_is_closed(vxm_point_in_mesh *inside, bool *result, vxm_error *error);
 /** Finds the box of the faces; before anything is asked. */
 void vxm_point_in_mesh_find_box(vxm_point_in_mesh *inside);
 

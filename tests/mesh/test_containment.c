@@ -174,6 +174,38 @@ static void a_bay_is_outside(void **state) {
   vxm_context_destroy(context);
 }
 
+/** A tube whose ends are open is around a box whichever axis it stands along, and not around one beside it.
+ */
+static void tubes_without_ends(void **state) {
+  (void)state;
+  vxm_context *context = context_of_threads(1);
+  for (int along = 0; along < 3; along++) {
+    vxm_soup *soup = new_soup(context);
+    double at[3] = {0, 0, 0};
+    for (int i = 0; i < 6; i++) { /* an L as seen along it */
+      static const double outline[6][2] = {{0, 0}, {4, 0}, {4, 2}, {2, 2}, {2, 4}, {0, 4}};
+      for (int end = 0; end < 2; end++) {
+        at[along] = 4 * end;
+        at[(along + 1) % 3] = outline[i][0];
+        at[(along + 2) % 3] = outline[i][1];
+        add_vertex(soup, at[0], at[1], at[2]);
+      }
+    }
+    for (uint32_t i = 0; i < 6; i++) {
+      uint32_t a = 2 * i, b = 2 * ((i + 1) % 6), quad[4] = {a, b, b + 1, a + 1};
+      add_face(soup, quad, 4);
+    }
+    double in[3] = {1, 1, 1}, beside[3] = {3, 3, 3};
+    in[along] = beside[along] = 2;
+    add_cube_at(soup, in[0], in[1], in[2], 0.5, true);
+    add_cube_at(soup, beside[0], beside[1], beside[2], 0.5, true);
+    const uint32_t parents[3] = {VXM_NO_COMPONENT, 0, VXM_NO_COMPONENT};
+    expect_parents(soup, parents, 3);
+    vxm_soup_destroy(soup);
+  }
+  vxm_context_destroy(context);
+}
+
 static void missing_and_turned_faces_do_no_harm(void **state) {
   (void)state;
   enum { INNER = 60 };
@@ -378,6 +410,7 @@ int main(void) {
       cmocka_unit_test(cubes_in_cubes),
       cmocka_unit_test(spheres_side_by_side_and_interpenetrating),
       cmocka_unit_test(a_bay_is_outside),
+      cmocka_unit_test(tubes_without_ends),
       cmocka_unit_test(missing_and_turned_faces_do_no_harm),
       cmocka_unit_test(volumes_of_turned_faces),
       cmocka_unit_test(random_trees_of_boxes),

@@ -58,10 +58,20 @@ static void overlapping(void **state) {
   }
 }
 
+static void voids_that_cut_through_rings(void **state) {
+  (void)state;
+  for (uint64_t seed = 1; seed <= ROUNDS(100); seed++) {
+    vxm_rng rng = {seed};
+    const assembly a = ring_in_void(&rng);
+    check_walls(&a, seed, &rng);
+  }
+}
+
 int main(void) {
   if (!open_cgal())
     return 77;
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_liner_in_a_vessel), cmocka_unit_test(nested),
-                                     cmocka_unit_test(overlapping)};
+                                     cmocka_unit_test(overlapping),
+                                     cmocka_unit_test(voids_that_cut_through_rings)};
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

@@ -15,7 +15,8 @@ static double wall_volume(const assembly *a) {
     double skin = 1, in = 1;
     for (int axis = 0; axis < 3; axis++) {
       skin *= a->boxes[i].planes[axis][3] - a->boxes[i].planes[axis][0];
-      in *= a->boxes[i].planes[axis][2] - a->boxes[i].planes[axis][1];
+      bool bored = a->boxes[i].kind == HOLLOW_BORE && a->boxes[i].along == axis;
+      in *= a->boxes[i].planes[axis][bored ? 3 : 2] - a->boxes[i].planes[axis][bored ? 0 : 1];
     }
     sum += skin - in;
   }
@@ -62,7 +63,8 @@ static void assert_cells(const vxm_soup *soup, const assembly *a, uint64_t seed,
 static void assert_solid(vxm_context *context, const assembly *a, bool inside_out, uint64_t seed,
                          vxm_rng *rng) {
   static const vxm_level levels[] = {VXM_LEVEL_CLEAN, VXM_LEVEL_CLOSED};
-  vxm_soup *soup = faces_of(context, a, inside_out, rng), *prepared;
+  vxm_soup *bodies = faces_of(context, a, inside_out, rng), *soup = in_any_order(bodies, rng), *prepared;
+  vxm_soup_destroy(bodies);
   assert_cells(soup, a, seed, "as it is");
   assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
   assert_cells(prepared, a, seed, "prepared");
@@ -106,8 +108,8 @@ static void overlapping(void **state) {
 /** Two voids in one box: what they share is filled by parity, which is told. */
 static void voids_of_one_body(void **state) {
   for (int shift = 0; shift < 6; shift++) {
-    const hollow_box whole = {{{0, 2, 6, 14}, {0, 2, 6, 14}, {0, 2, 6, 14}}},
-                     other = {{{0, 3 + shift, 8 + shift, 14}, {0, 3, 7, 14}, {0, 3, 7, 14}}};
+    const hollow_box whole = {.planes = {{0, 2, 6, 14}, {0, 2, 6, 14}, {0, 2, 6, 14}}},
+                     other = {.planes = {{0, 3 + shift, 8 + shift, 14}, {0, 3, 7, 14}, {0, 3, 7, 14}}};
     vxm_soup *soup = new_soup(*state);
     vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
     vxm_space_options place = VXM_SPACE_OPTIONS_INIT;
@@ -126,8 +128,64 @@ static void voids_of_one_body(void **state) {
   }
 }
 
+static void voids_that_cut_through_rings(void **state) {
+  for (uint64_t seed = 1; seed <= ROUNDS(400); seed++) {
+    vxm_rng rng = {seed};
+    assembly a = ring_in_void(&rng);
+    assert_solid(*state, &a, seed % 4 == 0, seed, &rng);
+  }
+}
+
+static void overlapping_with_bores(void **state) {
+  for (uint64_t seed = 1; seed <= ROUNDS(400); seed++) {
+    vxm_rng rng = {seed};
+    assembly a = random_boxes(2 + (size_t)vxm_rng_below(&rng, BODIES_MAX - 1), &rng);
+    for (size_t i = 1; i < a.count; i++) {
+      a.boxes[i].kind = vxm_rng_below(&rng, 3) > 0 ? HOLLOW_BORE : HOLLOW_VOID;
+      a.boxes[i].along = (int)vxm_rng_below(&rng, 3);
+    }
+    assert_solid(*state, &a, seed % 4 == 0, seed, &rng);
+  }
+}
+
+static int64_t turned(const vxm_repair_report *report) {
+  for (int i = 0; i < report->pass_count; i++)
+    if (strcmp(report->passes[i].pass, "orientation") == 0)
+      return report->passes[i].count;
+  return 0;
+}
+
+/** Two tubes one in the other, whose ends are open: they look the same whichever axis they stand along, and
+ * no face of theirs has to be turned. */
+static void pipes_without_ends(void **state) {
+  for (uint64_t seed = 1; seed <= ROUNDS(60); seed++) {
+    vxm_rng rng = {seed};
+    assembly a = random_boxes(1, &rng);
+    int along = (int)seed % 3, *planes = a.boxes[0].planes[along], shorter = (int)vxm_rng_below(&rng, 2);
+    a.boxes[0].kind = HOLLOW_PIPE;
+    a.boxes[0].along = along;
+    planes[1] = planes[0] + shorter;
+    planes[2] = planes[3] - shorter;
+    vxm_soup *soup = faces_of(*state, &a, seed % 4 == 0, &rng), *prepared;
+    vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+    options.level = VXM_LEVEL_CLEAN;
+    assert_cells(soup, &a, seed, "as it is");
+    assert_int_equal(vxm_repair_run(&prepared, &report, soup, &options, NULL), VXM_OK);
+    assert_cells(prepared, &a, seed, "repaired");
+    assert_int_equal(turned(&report), seed % 4 == 0 ? 8 : 0);
+    vxm_soup_destroy(prepared);
+    vxm_soup_destroy(soup);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_liner_in_a_vessel), cmocka_unit_test(nested),
-                                     cmocka_unit_test(overlapping), cmocka_unit_test(voids_of_one_body)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_liner_in_a_vessel),
+                                     cmocka_unit_test(nested),
+                                     cmocka_unit_test(overlapping),
+                                     cmocka_unit_test(voids_of_one_body),
+                                     cmocka_unit_test(voids_that_cut_through_rings),
+                                     cmocka_unit_test(overlapping_with_bores),
+                                     cmocka_unit_test(pipes_without_ends)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
