@@ -26,9 +26,12 @@ extern "C" {
  * run along both one way, as they do around the hole that a face has left, where there are such: then what
  * closes the loop can be wound as the faces are. Of four edges that meet at equal angles those are joined
  * that leave the straightest way to the two others, and then those that lie along each other but along which
- * the faces run one way. What is still equal is decided by where vertices lie, and
- * so are the order of loops and where each begins: nothing hangs on how vertices and faces are numbered, but
- * where several lie at one place.
+ * the faces run one way. What is still equal is decided by where vertices lie, and so are the order of loops
+ * and where each begins: nothing hangs on how vertices and faces are numbered, but where several lie at one
+ * place.
+ *
+ * Where a walk would pass a vertex twice because bodies touch there, each body has its rim by itself
+ * (mesh/touching_bodies.h).
  */
 typedef struct vxm_boundary_loops {
   vxm_context *context;

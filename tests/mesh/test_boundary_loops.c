@@ -227,6 +227,71 @@ static void faces_decide_about_edges_along_each_other(void **state) {
   vxm_context_destroy(context);
 }
 
+/** A cube whose least corner is at `low`, without one side. */
+static void add_open_cube(vxm_soup *soup, double low, int lacking) {
+  static const uint32_t sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  uint32_t v[8];
+  for (uint32_t c = 0; c < 8; c++)
+    v[c] = vertex_at(soup, (double[3]){low + (c & 1), low + (c >> 1 & 1), low + (c >> 2)});
+  for (int s = 0; s < 6; s++)
+    if (s != lacking)
+      add_face(soup, (uint32_t[]){v[sides[s][0]], v[sides[s][1]], v[sides[s][2]], v[sides[s][3]]}, 4);
+}
+
+/** Cubes that touch in a corner: each has a rim of its own, whether this passes the corner or not. */
+static void bodies_that_touch(void **state) {
+  (void)state;
+  vxm_context *context = context_of_threads(1);
+  for (int turn = 0; turn < 72; turn++) {
+    vxm_soup *soup = new_soup(context);
+    add_open_cube(soup, turn % 2, turn / 2 % 6);
+    add_open_cube(soup, 1 - turn % 2, turn / 12);
+    expect_lengths(soup, 2, 4);
+    vxm_soup_destroy(soup);
+  }
+  vxm_context_destroy(context);
+}
+
+/** A sheet that lies in a hole, hanging on a corner of its rim: the hole is what is left around it. */
+static void a_sheet_in_a_hole(void **state) {
+  (void)state;
+  vxm_context *context = context_of_threads(1);
+  vxm_soup *soup = new_soup(context);
+  add_open_cube(soup, 0, 5);
+  uint32_t corner = vertex_at(soup, (double[3]){0, 0, 1});
+  add_vertex(soup, 0.7, 0.3, 1);
+  add_vertex(soup, 0.3, 0.7, 1);
+  add_triangle(soup, corner, (uint32_t)soup->vertex_count - 2, (uint32_t)soup->vertex_count - 1);
+  expect_lengths(soup, 1, 7);
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+}
+
+/** A torus without a ring of faces, where the two rims are pinched together at a vertex: one hole. */
+static void a_hole_that_is_pinched(void **state) {
+  (void)state;
+  enum { N = 6, M = 8 };
+  vxm_context *context = context_of_threads(1);
+  vxm_soup *soup = new_soup(context);
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < M; j++) {
+      double u = 6.283185307179586 * i / N, v = 6.283185307179586 * j / M, r = 3 + cos(v);
+      add_vertex(soup, r * cos(u), r * sin(u), sin(v));
+    }
+  for (uint32_t i = 1; i < N; i++)
+    for (uint32_t j = 0; j < M; j++) {
+      uint32_t next = (i + 1) % N, up = (j + 1) % M;
+      uint32_t quad[4] = {i * M + j, next * M + j, next * M + up, i * M + up};
+      for (int c = 0; c < 4; c++)
+        quad[c] = quad[c] == M ? 0 : quad[c];
+      add_face(soup, quad, 4);
+    }
+  expect_lengths(soup, 1, 2 * M);
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+}
+
 static void random_soups(void **state) {
   (void)state;
   vxm_context *context = context_of_threads(1);
@@ -360,6 +425,8 @@ int main(void) {
       cmocka_unit_test(rims_run_one_way),       cmocka_unit_test(random_soups),
       cmocka_unit_test(fans_of_many_edges),     cmocka_unit_test(real_meshes),
       cmocka_unit_test(memory_may_run_out),     cmocka_unit_test(faces_decide_about_edges_along_each_other),
+      cmocka_unit_test(bodies_that_touch),      cmocka_unit_test(a_sheet_in_a_hole),
+      cmocka_unit_test(a_hole_that_is_pinched),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
