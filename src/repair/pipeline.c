@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/pipeline.h"
 #include "repair/bodies/bodies.h"
+#include "repair/bodies/flush_bodies.h"
 #include "repair/bodies/inner_walls.h"
 #include "repair/clean/other_diagonals.h"
 #include "repair/exact/on_lattice.h"
@@ -137,13 +138,25 @@ static vxm_status wrap_the_rest(vxm_repair_state *state, bool *changed, vxm_erro
   return status == VXM_OK && *changed ? unite(state, &more, error) : status;
 }
 
+/** Takes apart what touches with its rims, so that holes go round each for itself. */
+static vxm_status part_touching(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  int64_t added = 0;
+  vxm_status status = vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD)
+                          ? vxm_part_flush_bodies(state, &added, error)
+                          : VXM_OK;
+  state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
+  *changed = added > 0;
+  return status;
+}
+
 /** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were
  * moved apart. */
 static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *error) {
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{vxm_pass_meeting_holes, true},
+  } further[] = {{part_touching, false},
+                 {vxm_pass_meeting_holes, true},
                  {separate_until_quiet, true},
                  {vxm_pass_closing, true},
                  {vxm_pass_small_components, true},

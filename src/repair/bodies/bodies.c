@@ -3,6 +3,7 @@
 
 #include "mesh/sort.h"
 #include "repair/bodies/body_faces.h"
+#include "repair/bodies/flush_bodies.h"
 #include "repair/bodies/hanging_sheets.h"
 #include "repair/bodies/layers.h"
 #include "repair/bodies/whole_patches.h"
@@ -292,6 +293,17 @@ static void hand_on(vxm_repair_state *state) {
   state->has_patches = false;
 }
 
+/** Takes apart what touches with its rims, if patches are not apart, or are only as they touch so. */
+static bool part_touching(parting *p, bool *apart, bool *changed) {
+  int64_t added;
+  if (*apart && p->state->edges.against == 0)
+    return true;
+  vxm_status status = vxm_part_flush_bodies(p->state, &added, &p->error);
+  p->state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
+  *changed = added > 0;
+  return status == VXM_OK && (!*changed || is_apart(p->state, apart, &p->error) == VXM_OK);
+}
+
 /** Sheets that hang on bodies would make these open. There are none where no edge has more than two sides. */
 static bool cut_sheets(parting *p, bool *changed) {
   vxm_repair_state *state = p->state;
@@ -299,7 +311,7 @@ static bool cut_sheets(parting *p, bool *changed) {
   if (!state->has_patches && vxm_cut_hanging_sheets(state, &added, &p->error) != VXM_OK)
     return false;
   state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
-  *changed = added > 0;
+  *changed = *changed || added > 0;
   return true;
 }
 
@@ -310,7 +322,7 @@ static vxm_status part(vxm_repair_state *state, bool mixed, bool *changed, vxm_e
   parting p = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
   uint8_t *touches = NULL;
   bool any = false, apart;
-  bool done = mixed || is_apart(state, &apart, &p.error) == VXM_OK;
+  bool done = mixed || (is_apart(state, &apart, &p.error) == VXM_OK && part_touching(&p, &apart, changed));
   if (done && !mixed && apart) {
     hand_on(state);
     return VXM_OK;

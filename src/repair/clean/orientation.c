@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
-#include "mesh/sort.h"
+#include "repair/clean/held_patches.h"
 #include "repair/clean/spanning_turns.h"
+#include "repair/clean/touching_rims.h"
 #include "repair/state/repair_state.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@ static const double SHEET = 0.45;
 /** A volume of at most this part of the area times the diagonal is none. */
 static const double NO_VOLUME = 1e-12;
 
-/** Faces joined by edges that have exactly two sides. */
+/** Faces joined by edges that have exactly two sides, but for rims that touch (touching_rims.h). */
 typedef struct patch {
   int64_t conflicts;    /**< sides along edges that no turning makes consistent */
   int64_t inconsistent; /**< sides along edges that are not consistent in the input */
@@ -28,6 +29,7 @@ typedef struct orienting {
   vxm_unit_scale frame;
   const uint32_t *sides; /**< per corner: its edge */
   size_t (*pair)[2];     /**< per edge with two sides: their faces */
+  uint8_t *fold;         /**< per edge: its faces lie on each other and are not joined by it */
   uint32_t *label;       /**< per face: its patch */
   uint8_t *turn;         /**< per face: 1 = against the first face of its patch, later: against the input */
   size_t *queue;
@@ -88,7 +90,7 @@ static size_t visit(orienting *o, size_t face, size_t queued) {
   bool backward = walks_backward(corner, count);
   for (size_t i = 0; i < count; i++) {
     size_t e = o->sides[o->soup->offsets[face] + (backward ? count - 1 - i : i)];
-    if (e == VXM_NO_EDGE || o->state->edges.edges[e].count != 2)
+    if (e == VXM_NO_EDGE || o->state->edges.edges[e].count != 2 || o->fold[e])
       continue;
     size_t other = o->pair[e][o->pair[e][0] == face];
     uint8_t against = o->state->edges.edges[e].forward != 1, turn = o->turn[face] ^ against;
@@ -107,6 +109,7 @@ static size_t visit(orienting *o, size_t face, size_t queued) {
 }
 
 static bool find_patches(orienting *o) {
+  o->patch_count = 0;
   for (size_t f = 0; f < o->soup->face_count; f++)
     o->label[f] = VXM_NO_COMPONENT;
   for (size_t f = 0; f < o->soup->face_count; f++) {
@@ -129,6 +132,19 @@ static bool find_patches(orienting *o) {
       return false;
   }
   return true;
+}
+
+/** Finds the patches; bodies that touch with their rims are not one. */
+static bool part_patches(orienting *o) {
+  bool any;
+  if (vxm_flat_folds_find(o->fold, &any, o->state, (const size_t(*)[2])o->pair, o->frame.scale, &o->error) !=
+          VXM_OK ||
+      !find_patches(o))
+    return false;
+  vxm_rimmed_patches patches = {o->state, (const size_t(*)[2])o->pair, o->label, o->turn, o->patch_count};
+  if (any && vxm_touching_rims_keep(o->fold, &any, &patches, o->frame.scale, &o->error) != VXM_OK)
+    return false;
+  return !any || find_patches(o);
 }
 
 /** Where all faces go together as they are, what edges connect is known. */
@@ -178,7 +194,7 @@ static void count_conflicts(orienting *o, const uint8_t *chosen) {
   for (size_t e = 0; e < o->state->edges.count; e++) {
     const vxm_edge *edge = &o->state->edges.edges[e];
     const size_t *pair = o->pair[e];
-    if (edge->count != 2 || pair[1] == SIZE_MAX || !chosen[o->label[pair[0]]])
+    if (edge->count != 2 || pair[1] == SIZE_MAX || o->fold[e] || !chosen[o->label[pair[0]]])
       continue;
     bool against = edge->forward != 1;
     o->patches[o->label[pair[0]]].conflicts += 2 * ((o->turn[pair[0]] ^ o->turn[pair[1]]) != against);
@@ -193,7 +209,7 @@ static bool settle_conflicts(orienting *o) {
     chosen[i] = o->patches[i].conflicts > 0;
     any |= chosen[i];
   }
-  vxm_joined_faces joined = {o->label, (const size_t(*)[2])o->pair, chosen};
+  vxm_joined_faces joined = {o->label, (const size_t(*)[2])o->pair, o->fold, chosen};
   bool done = chosen != NULL;
   if (any)
     done = vxm_spanning_turns_find(o->turn, o->state, &joined, &o->error) == VXM_OK;
@@ -224,76 +240,6 @@ static bool make_consistent(orienting *o) {
     add_area(p, area_of(o, f));
   }
   return o->error.code == VXM_OK;
-}
-
-/* ---- Patches that together are consistent about an edge with four sides or more ---- */
-
-/** A side along an edge with an even number of sides, four or more. */
-typedef struct crossing {
-  size_t edge;
-  uint32_t patch;
-  int along; /**< 1 upward, -1 downward */
-} crossing;
-
-static int by_edge_then_patch(const void *a, const void *b) {
-  const crossing *p = a, *q = b;
-  return vxm_compare_pairs(p->edge, p->patch, q->edge, q->patch);
-}
-
-/** Lists (or, with NULL, counts) the sides at crossings, as the faces are turned by now. */
-static bool list_crossings(orienting *o, crossing *crossings, size_t *out) {
-  size_t listed = 0;
-  for (size_t f = 0; f < o->soup->face_count; f++) {
-    if (!goes_on(o, f))
-      return false;
-    size_t count;
-    const uint32_t *corner = vxm_face(o->soup, f, &count);
-    for (size_t i = 0; i < count; i++) {
-      size_t e = o->sides[o->soup->offsets[f] + (o->turn[f] ? count - 1 - i : i)];
-      if (e == VXM_NO_EDGE || o->state->edges.edges[e].count < 4 ||
-          vxm_edge_is_odd(&o->state->edges.edges[e]))
-        continue;
-      int along = corner[i] < corner[i + 1 < count ? i + 1 : 0] ? 1 : -1;
-      if (crossings)
-        crossings[listed] = (crossing){e, o->label[f], along};
-      listed++;
-    }
-  }
-  *out = listed;
-  return true;
-}
-
-/** Marks the patches that are out of balance about an edge by themselves, but in balance together. */
-static void mark_held(const crossing *crossings, size_t count, uint8_t *held) {
-  for (size_t i = 0, j; i < count; i = j) {
-    int balance = 0;
-    for (j = i; j < count && crossings[j].edge == crossings[i].edge; j++)
-      balance += crossings[j].along;
-    for (size_t k = i, next; k < j && balance == 0; k = next) {
-      int own = 0;
-      for (next = k; next < j && crossings[next].patch == crossings[k].patch; next++)
-        own += crossings[next].along;
-      held[crossings[k].patch] |= own != 0;
-    }
-  }
-}
-
-/** Such patches hold each other: turned alone, one would open what is closed. As all of them about an edge
- * stay, they stay in balance. */
-static bool find_held(orienting *o, uint8_t *held) {
-  size_t count;
-  if (o->state->edges.crowded == 0)
-    return true;
-  if (!list_crossings(o, NULL, &count))
-    return false;
-  crossing *crossings = allocate(o, count, sizeof *crossings);
-  bool done = crossings && (count == 0 || list_crossings(o, crossings, &count));
-  if (done && count > 0) {
-    qsort(crossings, count, sizeof *crossings, by_edge_then_patch);
-    mark_held(crossings, count, held);
-  }
-  vxm_free(o->state->context, crossings);
-  return done;
 }
 
 /* ---- Outward ---- */
@@ -389,7 +335,8 @@ static bool turn_outward(orienting *o) {
   uint8_t *known = allocate(o, count, sizeof *known), *held = allocate(o, count, sizeof *held);
   size_t *chain = allocate(o, count, sizeof *chain);
   vxm_containment containment = {0};
-  bool done = solid && over && known && held && chain && find_held(o, held);
+  bool done = solid && over && known && held && chain &&
+              vxm_held_patches_find(held, o->state, o->label, o->turn, &o->error) == VXM_OK;
   for (size_t i = 0; done && i < count; i++)
     solid[i] = is_closed_or_nearly(&o->patches[i]);
   if (done && find_containment(o, solid, &containment)) {
@@ -426,12 +373,13 @@ static bool orient(orienting *o) {
   }
   o->sides = o->state->edges.sides;
   o->pair = allocate(o, o->state->edges.count, sizeof *o->pair);
+  o->fold = allocate(o, o->state->edges.count, sizeof *o->fold);
   o->label = allocate(o, faces, sizeof *o->label);
   o->turn = allocate(o, faces, sizeof *o->turn);
   o->queue = allocate(o, faces, sizeof *o->queue);
-  if (!o->pair || !o->label || !o->turn || !o->queue)
+  if (!o->pair || !o->fold || !o->label || !o->turn || !o->queue)
     return false;
-  return pair_faces(o) && find_patches(o) && make_consistent(o) && turn_outward(o);
+  return pair_faces(o) && part_patches(o) && make_consistent(o) && turn_outward(o);
 }
 
 /** Notes which faces run the other way than when they came in, by this pass and those before. */
@@ -451,7 +399,8 @@ static bool note_turned(orienting *o, bool *changed) {
  * another one that was wound against it is a cavity and stays so, unless it lies in a cavity of that. Patches
  * that only together are consistent about an edge stay as they are, and sheets keep the side that most of
  * their area has; both are turned where the model as a whole came inside out. A patch that no turning makes
- * consistent gets as few inconsistent edges as a longest spanning tree leaves (spanning_turns.h).
+ * consistent gets as few inconsistent edges as a longest spanning tree leaves (spanning_turns.h). Bodies
+ * whose rims lie on each other do not turn each other (touching_rims.h).
  */
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
@@ -477,6 +426,7 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
   vxm_free(state->context, o.turn);
   if (o.label != state->patches.of_face)
     vxm_free(state->context, o.label);
+  vxm_free(state->context, o.fold);
   vxm_free(state->context, o.pair);
   if (!done) {
     vxm_error_pass(error, &o.error);

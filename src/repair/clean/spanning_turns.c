@@ -32,7 +32,7 @@ static size_t list_joints(joint *joints, const vxm_repair_state *state, const vx
   for (size_t e = 0; e < state->edges.count; e++) {
     const vxm_edge *edge = &state->edges.edges[e];
     const size_t *pair = joined->pair[e];
-    if (edge->count != 2 || pair[0] == pair[1] || pair[1] == SIZE_MAX ||
+    if (edge->count != 2 || pair[0] == pair[1] || pair[1] == SIZE_MAX || joined->apart[e] ||
         !joined->chosen[joined->label[pair[0]]])
       continue;
     const double *p = vxm_position(state->soup, edge->a), *q = vxm_position(state->soup, edge->b);

@@ -9,6 +9,7 @@
 typedef struct vxm_joined_faces {
   const uint32_t *label;   /**< per face: its patch */
   const size_t (*pair)[2]; /**< per edge with two sides: their faces */
+  const uint8_t *apart;    /**< per edge: it joins nothing */
   const uint8_t *chosen;   /**< per patch: whether its faces are to be turned */
 } vxm_joined_faces;
 

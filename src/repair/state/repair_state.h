@@ -83,7 +83,7 @@ typedef struct vxm_repair_state {
   vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
   bool renumbered;                         /**< faces have other numbers than they came in with */
   int64_t nonorientable_patches;           /**< in the last pass of orientation */
-  bool has_held_patches;                   /**< it met patches that hold each other: see find_held */
+  bool has_held_patches;                   /**< it met patches that hold each other (vxm_held_patches_find) */
   int64_t shared_faces;                    /**< repeated faces that the last pass of duplicates left */
   int64_t open_parts;                      /**< that the last pass of closing left open */
   int64_t sheets;                          /**< open components that became plates, or went */
