@@ -9,11 +9,10 @@
  * Gives sheets that hang vertices of their own, so that the edges they hang on are what they are without
  * them: a closed body with a fin on one of its edges has an edge with three sides, and is closed again.
  *
- * Faces that edges with two sides connect are a patch. A patch is a sheet if it has a rim and is one by the
- * rule of the closing of holes (vxm_find_sheets). Sheets that meet at an edge are cut off together, if all
- * edges where they meet other patches have an even number of sides without them: of three walls that meet at
- * an edge none hangs on the others if all are sheets. That is done where it matters: where the faces that
- * edges connect are closed without them, or are a sheet as a whole with them.
+ * Asked are sheets with a rim (repair/bodies/rimmed_sheets.h). Those that meet at an edge are cut off
+ * together, if all edges where they meet other patches have an even number of sides without them: of three
+ * walls that meet at an edge none hangs on the others if all are sheets. That is done where it matters: where
+ * the faces that edges connect are closed without them, or are a sheet as a whole with them.
  *
  * @param[out] added vertices that there are more
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
