@@ -9,15 +9,28 @@ static bool is_at_the_side(size_t cell) {
   return false;
 }
 
-static void assert_fins_do_nothing(vxm_context *context, uint64_t seed, const manner *how) {
+/** Adds the squares of all boxes together, which are those of their union, or of each box by itself. */
+static body add_boxes(vxm_soup *soup, const manner *how, bool separate, vxm_rng *rng) {
+  body all = {.turned = false};
+  for (int boxes = 1 + (int)vxm_rng_below(rng, 3), i = 0; i < boxes; i++) {
+    body one = {.turned = false};
+    add_random_box(&one, rng);
+    for (size_t c = 0; c < CELLS; c++) { /* there is room about it, and the middle is in it */
+      one.cells[c] = (i == 0 && c == cell_at(2, 3, 2)) || (one.cells[c] && !is_at_the_side(c));
+      all.cells[c] = all.cells[c] || one.cells[c];
+    }
+    if (separate)
+      add_body(soup, &one, how, rng);
+  }
+  if (!separate)
+    add_body(soup, &all, how, rng);
+  return all;
+}
+
+static void assert_fins_do_nothing(vxm_context *context, uint64_t seed, const manner *how, bool separate) {
   vxm_rng rng = {seed};
-  body b = {.turned = false};
-  for (int boxes = 1 + (int)vxm_rng_below(&rng, 3); boxes > 0; boxes--)
-    add_random_box(&b, &rng);
-  for (size_t c = 0; c < CELLS; c++) /* there is room about it, and the middle is in it */
-    b.cells[c] = c == cell_at(2, 3, 2) || (b.cells[c] && !is_at_the_side(c));
   vxm_soup *soup = new_soup(context), *fins = new_soup(context);
-  add_body(soup, &b, how, &rng);
+  body b = add_boxes(soup, how, separate, &rng);
   add_random_fins(fins, &b, how, &rng);
   append(soup, fins, 0);
   int wrong = count_wrong_beside(soup, fins, &b, how);
@@ -27,11 +40,20 @@ static void assert_fins_do_nothing(vxm_context *context, uint64_t seed, const ma
   vxm_soup_destroy(soup);
 }
 
-static void fins_do_nothing(void **state) {
+static void check_fins(vxm_context *context, bool separate) {
   manner triangles = squares;
   triangles.triangles = true;
   for (uint64_t seed = 1; seed <= rounds_of(300); seed++)
-    assert_fins_do_nothing(*state, seed, seed % 2 == 0 ? &triangles : &squares);
+    assert_fins_do_nothing(context, seed, seed % 2 == 0 ? &triangles : &squares, separate);
+}
+
+static void fins_do_nothing(void **state) {
+  check_fins(*state, false);
+}
+
+/** What boxes share is there several times, cut along other diagonals; it is not to be told by a fin. */
+static void fins_do_nothing_to_boxes_that_overlap(void **state) {
+  check_fins(*state, true);
 }
 
 enum { LOW = 2, HIGH = 4, FLAPS = 6 };
@@ -80,7 +102,8 @@ static void flaps_do_nothing_to_a_box_with_a_hole(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(fins_do_nothing), cmocka_unit_test(flaps_do_nothing),
-                                     cmocka_unit_test(flaps_do_nothing_to_a_box_with_a_hole)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(fins_do_nothing), cmocka_unit_test(fins_do_nothing_to_boxes_that_overlap),
+      cmocka_unit_test(flaps_do_nothing), cmocka_unit_test(flaps_do_nothing_to_a_box_with_a_hole)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

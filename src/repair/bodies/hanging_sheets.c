@@ -17,6 +17,7 @@ typedef struct cutting {
   vxm_soup *soup;
   vxm_edge_groups groups;
   vxm_rimmed_sheets sheets;
+  bool of_closed;    /**< only those are cut off without which the faces that edges connect are closed */
   uint8_t *marks;    /**< per face that stands for sheets that are joined */
   uint8_t *unclosed; /**< per group: it is not closed without the sheets that hang */
   uint8_t *open;     /**< per face: of a component that is a sheet */
@@ -95,7 +96,7 @@ static bool choose(cutting *c, bool *any) {
       if (others_at(c, s) % 2)
         c->unclosed[c->groups.of_face[f]] = 1;
   bool asks = false;
-  for (size_t f = 0; f < c->soup->face_count && !asks; f++)
+  for (size_t f = 0; f < c->soup->face_count && !asks && !c->of_closed; f++)
     asks = c->unclosed[c->groups.of_face[f]] && hangs(c, f);
   int64_t parts = c->state->open_parts; /* those that the pass of closing counted */
   if (asks && vxm_find_sheets(c->open, c->state, &c->error) != VXM_OK)
@@ -165,12 +166,12 @@ static bool cut_sheets(cutting *c) {
   return done;
 }
 
-vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_error *error) {
+static vxm_status cut_off(vxm_repair_state *state, bool of_closed, int64_t *added, vxm_error *error) {
   *added = 0;
   vxm_status status = vxm_repair_state_edges(state, error);
   if (status != VXM_OK || !may_hang(&state->edges))
     return status;
-  cutting c = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
+  cutting c = {.state = state, .soup = state->soup, .of_closed = of_closed, .error = VXM_ERROR_INIT};
   size_t before = state->soup->vertex_count;
   bool done = cut_sheets(&c);
   vxm_free(state->context, c.at);
@@ -185,4 +186,41 @@ vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_e
   if (!done)
     vxm_error_pass(error, &c.error);
   return done ? VXM_OK : c.error.code;
+}
+
+vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_error *error) {
+  return cut_off(state, false, added, error);
+}
+
+/* ---- For a while ---- */
+
+vxm_status vxm_take_sheets_off(vxm_hung_sheets *off, vxm_repair_state *state, vxm_error *error) {
+  *off = (vxm_hung_sheets){0};
+  vxm_status status = vxm_repair_state_edges(state, error);
+  if (status != VXM_OK || !may_hang(&state->edges))
+    return status;
+  const vxm_soup *soup = state->soup;
+  int64_t added = 0;
+  off->vertex_count = soup->vertex_count;
+  off->indices = vxm_repair_state_scratch(state, soup->corner_count, sizeof *off->indices, &status, error);
+  if (!off->indices)
+    return status;
+  memcpy(off->indices, soup->indices, soup->corner_count * sizeof *off->indices);
+  status = cut_off(state, true, &added, error);
+  if (added == 0) {
+    vxm_free(state->context, off->indices);
+    off->indices = NULL;
+  }
+  return status;
+}
+
+void vxm_hang_sheets_again(vxm_hung_sheets *off, vxm_repair_state *state) {
+  if (!off->indices)
+    return;
+  vxm_soup *soup = state->soup;
+  memcpy(soup->indices, off->indices, soup->corner_count * sizeof *off->indices);
+  soup->vertex_count = off->vertex_count;
+  vxm_free(state->context, off->indices);
+  off->indices = NULL;
+  vxm_repair_state_touch(state);
 }

@@ -21,4 +21,15 @@
  */
 vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_error *error);
 
+/** What there was before sheets were cut off for a while. */
+typedef struct vxm_hung_sheets {
+  uint32_t *indices; /**< NULL if none were */
+  size_t vertex_count;
+} vxm_hung_sheets;
+
+/** Cuts those off without which the faces that edges connect are closed, until vxm_hang_sheets_again, which
+ * is called in any case; faces are not to be changed in between. @return as above */
+vxm_status vxm_take_sheets_off(vxm_hung_sheets *off, vxm_repair_state *state, vxm_error *error);
+void vxm_hang_sheets_again(vxm_hung_sheets *off, vxm_repair_state *state);
+
 #endif
