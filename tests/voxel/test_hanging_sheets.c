@@ -27,33 +27,67 @@ static body add_boxes(vxm_soup *soup, const manner *how, bool separate, vxm_rng 
   return all;
 }
 
-static void assert_fins_do_nothing(vxm_context *context, uint64_t seed, const manner *how, bool separate) {
+/** Adds single squares within a body, each looking this way or that. */
+static void add_random_walls(vxm_soup *soup, const body *b, const manner *how, vxm_rng *rng) {
+  bool taken[3][CELLS] = {{false}};
+  for (int tries = 0; tries < 60; tries++) {
+    int at[3], axis = (int)vxm_rng_below(rng, 3);
+    for (int a = 0; a < 3; a++)
+      at[a] = (int)vxm_rng_below(rng, SIDE);
+    int before[3] = {at[0], at[1], at[2]};
+    before[axis]--;
+    bool *is_taken = &taken[axis][cell_at(at[0], at[1], at[2])];
+    if (*is_taken || !has_cell(b, at) || !has_cell(b, before))
+      continue;
+    add_square(soup, how, at, axis, vxm_rng_below(rng, 2) == 0, rng);
+    *is_taken = true;
+  }
+}
+
+/** What there is beside the squares of the bodies. */
+typedef struct scene {
+  bool separate; /**< each body has squares of its own */
+  bool walls, fins;
+} scene;
+
+static void assert_solid(vxm_context *context, uint64_t seed, const manner *how, scene drawn) {
   vxm_rng rng = {seed};
-  vxm_soup *soup = new_soup(context), *fins = new_soup(context);
-  body b = add_boxes(soup, how, separate, &rng);
-  add_random_fins(fins, &b, how, &rng);
-  append(soup, fins, 0);
-  int wrong = count_wrong_beside(soup, fins, &b, how);
+  vxm_soup *soup = new_soup(context), *sheets = new_soup(context);
+  body b = add_boxes(soup, how, drawn.separate, &rng);
+  if (drawn.walls)
+    add_random_walls(sheets, &b, how, &rng);
+  if (drawn.fins)
+    add_random_fins(sheets, &b, how, &rng);
+  append(soup, sheets, 0);
+  int wrong = count_wrong_beside(soup, sheets, &b, how);
   if (wrong > 0)
     fail_msg("seed %llu: %d voxels are wrong", (unsigned long long)seed, wrong);
-  vxm_soup_destroy(fins);
+  vxm_soup_destroy(sheets);
   vxm_soup_destroy(soup);
 }
 
-static void check_fins(vxm_context *context, bool separate) {
+static void check_scenes(vxm_context *context, scene drawn) {
   manner triangles = squares;
   triangles.triangles = true;
   for (uint64_t seed = 1; seed <= rounds_of(300); seed++)
-    assert_fins_do_nothing(context, seed, seed % 2 == 0 ? &triangles : &squares, separate);
+    assert_solid(context, seed, seed % 2 == 0 ? &triangles : &squares, drawn);
 }
 
 static void fins_do_nothing(void **state) {
-  check_fins(*state, false);
+  check_scenes(*state, (scene){.fins = true});
 }
 
 /** What boxes share is there several times, cut along other diagonals; it is not to be told by a fin. */
 static void fins_do_nothing_to_boxes_that_overlap(void **state) {
-  check_fins(*state, true);
+  check_scenes(*state, (scene){.separate = true, .fins = true});
+}
+
+static void walls_do_nothing_to_boxes_that_overlap(void **state) {
+  check_scenes(*state, (scene){.separate = true, .walls = true});
+}
+
+static void walls_and_fins_do_nothing(void **state) {
+  check_scenes(*state, (scene){.separate = true, .walls = true, .fins = true});
 }
 
 enum { LOW = 2, HIGH = 4, FLAPS = 6 };
@@ -102,8 +136,11 @@ static void flaps_do_nothing_to_a_box_with_a_hole(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fins_do_nothing), cmocka_unit_test(fins_do_nothing_to_boxes_that_overlap),
-      cmocka_unit_test(flaps_do_nothing), cmocka_unit_test(flaps_do_nothing_to_a_box_with_a_hole)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(fins_do_nothing),
+                                     cmocka_unit_test(fins_do_nothing_to_boxes_that_overlap),
+                                     cmocka_unit_test(walls_do_nothing_to_boxes_that_overlap),
+                                     cmocka_unit_test(walls_and_fins_do_nothing),
+                                     cmocka_unit_test(flaps_do_nothing),
+                                     cmocka_unit_test(flaps_do_nothing_to_a_box_with_a_hole)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

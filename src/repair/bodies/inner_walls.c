@@ -317,10 +317,14 @@ static vxm_status leave_walls_out(walling *w, bool *changed, vxm_error *error) {
   return status == VXM_OK ? leave_skin(w, changed, error) : status;
 }
 
+bool vxm_inner_walls_go(const vxm_repair_state *state) {
+  return (state->divides || vxm_repair_state_reaches(state, VXM_LEVEL_CLOSED)) &&
+         !state->options.keep_orientation;
+}
+
 vxm_status vxm_pass_inner_walls(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!(state->divides || vxm_repair_state_reaches(state, VXM_LEVEL_CLOSED)) ||
-      state->options.keep_orientation)
+  if (!vxm_inner_walls_go(state))
     return VXM_OK;
   vxm_status status = vxm_repair_state_count_edges(state, error);
   if (status != VXM_OK || state->edges.odd == state->edges.open)

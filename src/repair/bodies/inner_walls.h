@@ -28,4 +28,7 @@
  */
 vxm_status vxm_pass_inner_walls(vxm_repair_state *state, bool *changed, vxm_error *error);
 
+/** Whether walls go from this repair at all. */
+bool vxm_inner_walls_go(const vxm_repair_state *state);
+
 #endif
