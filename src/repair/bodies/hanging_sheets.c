@@ -1,26 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/hanging_sheets.h"
 
+#include "repair/bodies/rimmed_sheets.h"
 #include "repair/holes/fill_fans.h"
-#include "repair/state/edge_groups.h"
 
 #include <string.h>
 
-/** What the edges of a patch tell, at the face that stands for it. */
+/** What the edges of sheets that are joined tell, at the face that stands for them. */
 enum mark {
-  RIM = 1,    /**< one has no other side */
-  BORDER = 2, /**< one has more than two sides */
-  HANGS = 4,  /**< one has sides of other patches than sheets */
-  HOLDS = 8   /**< one has an odd number of those: it would be open without the sheets */
+  HANGS = 1, /**< one has sides of other patches than sheets */
+  HOLDS = 2  /**< one has an odd number of those: it would be open without the sheets */
 };
 
 typedef struct cutting {
   vxm_repair_state *state;
   vxm_soup *soup;
   vxm_edge_groups groups;
-  size_t *patch;     /**< per face: another one of its patch, or itself; see vxm_set_of */
-  uint8_t *marks;    /**< per face that stands for a patch */
-  uint8_t *sheet;    /**< per face */
+  vxm_rimmed_sheets sheets;
+  bool of_closed;    /**< only those are cut off without which the faces that edges connect are closed */
+  uint8_t *marks;    /**< per face that stands for sheets that are joined */
   uint8_t *unclosed; /**< per group: it is not closed without the sheets that hang */
   uint8_t *open;     /**< per face: of a component that is a sheet */
   size_t *at;        /**< per edge: scratch */
@@ -36,12 +34,6 @@ static bool goes_on(cutting *c, size_t step) {
   return vxm_check_cancelled_at(step, c->state->context, &c->error) == VXM_OK;
 }
 
-/** Sides along the edge that begins at a corner; 0 if there is none. */
-static uint32_t sides_at(const cutting *c, uint64_t corner) {
-  size_t edge = c->groups.sides[corner];
-  return edge == VXM_NO_EDGE ? 0 : c->state->edges.edges[edge].count;
-}
-
 /** Whether there is a rim, and an edge that a sheet could hang on. */
 static bool may_hang(const vxm_edges *edges) {
   bool rim = false, border = false;
@@ -52,142 +44,18 @@ static bool may_hang(const vxm_edges *edges) {
   return rim && border;
 }
 
-/* ---- Patches ---- */
-
-/** Joins faces that meet at an edge with two sides, or, once they are known, sheets that meet at one with
- * more. */
-static bool join_faces(cutting *c, bool sheets) {
-  memset(c->at, 0, c->state->edges.count * sizeof *c->at);
-  for (size_t f = 0; f < c->soup->face_count && goes_on(c, f); f++)
-    for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1]; s++) {
-      uint32_t count = sides_at(c, s);
-      if (sheets ? count <= 2 || !c->sheet[f] : count != 2)
-        continue;
-      size_t *other = &c->at[c->groups.sides[s]];
-      if (*other == 0)
-        *other = f + 1;
-      else
-        vxm_set_unite(c->patch, f, *other - 1);
-    }
-  return c->error.code == VXM_OK;
-}
-
-/** Finds the patches; *any: some have a rim and meet others. */
-static bool find_patches(cutting *c, bool *any) {
-  for (size_t f = 0; f < c->soup->face_count; f++)
-    c->patch[f] = f;
-  if (!join_faces(c, false))
-    return false;
-  for (size_t f = 0; f < c->soup->face_count && goes_on(c, f); f++) {
-    uint8_t *marks = &c->marks[vxm_set_of(c->patch, f)];
-    for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1]; s++) {
-      uint32_t count = sides_at(c, s);
-      *marks |= count == 1 ? RIM : count > 2 ? BORDER : 0;
-    }
-    *any = *any || *marks == (RIM | BORDER);
-  }
-  return c->error.code == VXM_OK;
-}
-
-/* ---- Which patches are sheets ---- */
-
-/** The patches that may be sheets, as a soup. */
-typedef struct apart {
-  vxm_soup *soup;
-  uint8_t *sheet;         /**< per face of it */
-  size_t *first, *next;   /**< per face: 1 + the first face of its patch, 1 + the one that follows it */
-  size_t *number;         /**< per vertex: 1 + the last one that stands for it there */
-  uint32_t *corners;      /**< scratch per corner of a face */
-  vxm_repair_state state; /**< of it */
-} apart;
-
-static bool add_face(cutting *c, apart *a, size_t face, size_t begin) {
-  size_t count;
-  const uint32_t *corner = vxm_face(c->soup, face, &count);
-  for (size_t i = 0; i < count; i++) {
-    const double *x = vxm_position(c->soup, corner[i]);
-    size_t *number = &a->number[corner[i]];
-    if (*number <= begin) { /* so far only other patches have it */
-      if (vxm_soup_add_vertex(a->soup, x[0], x[1], x[2], &c->error) != VXM_OK)
-        return false;
-      *number = a->soup->vertex_count;
-    }
-    a->corners[i] = (uint32_t)(*number - 1);
-  }
-  return vxm_soup_add_face(a->soup, a->corners, count, &c->error) == VXM_OK;
-}
-
-/** Makes the soup, where each patch has vertices of its own. */
-static bool make_apart(cutting *c, apart *a) {
-  for (size_t f = c->soup->face_count; f-- > 0;) {
-    size_t root = vxm_set_of(c->patch, f);
-    a->next[f] = a->first[root];
-    a->first[root] = f + 1;
-  }
-  for (size_t f = 0; f < c->soup->face_count && goes_on(c, f); f++)
-    for (size_t g = c->marks[f] == (RIM | BORDER) ? a->first[f] : 0, begin = a->soup->vertex_count; g != 0;
-         g = a->next[g - 1])
-      if (!goes_on(c, g) || !add_face(c, a, g - 1, begin))
-        return false;
-  return c->error.code == VXM_OK;
-}
-
-/** Asks which components of it are sheets. */
-static bool ask_apart(cutting *c, apart *a) {
-  a->state = (vxm_repair_state){.context = c->state->context, .soup = a->soup};
-  a->state.used = scratch(c, a->soup->vertex_count, sizeof *a->state.used);
-  a->sheet = a->state.used ? scratch(c, a->soup->face_count, sizeof *a->sheet) : NULL;
-  if (!a->sheet || vxm_find_sheets(a->sheet, &a->state, &c->error) != VXM_OK)
-    return false;
-  size_t next = 0;
-  for (size_t f = 0; f < c->soup->face_count; f++)
-    for (size_t g = c->marks[f] == (RIM | BORDER) ? a->first[f] : 0; g != 0; g = a->next[g - 1])
-      c->sheet[g - 1] = a->sheet[next++];
-  return true;
-}
-
-static size_t largest_face(const vxm_soup *soup) {
-  size_t largest = 0;
-  for (size_t f = 0; f < soup->face_count; f++) {
-    size_t count = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
-    largest = count > largest ? count : largest;
-  }
-  return largest;
-}
-
-static bool find_sheets(cutting *c) {
-  apart a = {0};
-  size_t faces = c->soup->face_count;
-  a.first = scratch(c, faces, sizeof *a.first);
-  a.next = a.first ? scratch(c, faces, sizeof *a.next) : NULL;
-  a.number = a.next ? scratch(c, c->soup->vertex_count, sizeof *a.number) : NULL;
-  a.corners = a.number ? scratch(c, largest_face(c->soup), sizeof *a.corners) : NULL;
-  bool done = a.corners && vxm_soup_create(&a.soup, c->state->context, "", &c->error) == VXM_OK;
-  done = done && make_apart(c, &a) && ask_apart(c, &a);
-  if (a.state.soup)
-    vxm_repair_state_touch(&a.state);
-  vxm_free(c->state->context, a.state.used);
-  vxm_free(c->state->context, a.sheet);
-  vxm_soup_destroy(a.soup);
-  vxm_free(c->state->context, a.corners);
-  vxm_free(c->state->context, a.number);
-  vxm_free(c->state->context, a.next);
-  vxm_free(c->state->context, a.first);
-  return done;
-}
-
 /* ---- Which sheets hang ---- */
 
 /** Whether a face is of a sheet that hangs. */
 static bool hangs(cutting *c, size_t face) {
-  return c->sheet[face] && (c->marks[vxm_set_of(c->patch, face)] & (HANGS | HOLDS)) == HANGS;
+  return c->sheets.sheet[face] && (c->marks[vxm_set_of(c->sheets.joined, face)] & (HANGS | HOLDS)) == HANGS;
 }
 
 /** Counts the sides of sheets at each edge; with `hanging` those of sheets that hang. */
 static void count_sheets(cutting *c, bool hanging) {
   memset(c->at, 0, c->state->edges.count * sizeof *c->at);
   for (size_t f = 0; f < c->soup->face_count; f++)
-    for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1] && c->sheet[f]; s++)
+    for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1] && c->sheets.sheet[f]; s++)
       if (c->groups.sides[s] != VXM_NO_EDGE && (!hanging || hangs(c, f)))
         c->at[c->groups.sides[s]]++;
 }
@@ -203,9 +71,9 @@ static size_t others_at(const cutting *c, uint64_t corner) {
 static bool look_at_edges(cutting *c) {
   count_sheets(c, false);
   for (size_t f = 0; f < c->soup->face_count && goes_on(c, f); f++)
-    for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1] && c->sheet[f]; s++) {
+    for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1] && c->sheets.sheet[f]; s++) {
       size_t others = others_at(c, s);
-      c->marks[vxm_set_of(c->patch, f)] |= others % 2 ? HOLDS : others ? HANGS : 0;
+      c->marks[vxm_set_of(c->sheets.joined, f)] |= others % 2 ? HOLDS : others ? HANGS : 0;
     }
   return c->error.code == VXM_OK;
 }
@@ -228,7 +96,7 @@ static bool choose(cutting *c, bool *any) {
       if (others_at(c, s) % 2)
         c->unclosed[c->groups.of_face[f]] = 1;
   bool asks = false;
-  for (size_t f = 0; f < c->soup->face_count && !asks; f++)
+  for (size_t f = 0; f < c->soup->face_count && !asks && !c->of_closed; f++)
     asks = c->unclosed[c->groups.of_face[f]] && hangs(c, f);
   int64_t parts = c->state->open_parts; /* those that the pass of closing counted */
   if (asks && vxm_find_sheets(c->open, c->state, &c->error) != VXM_OK)
@@ -270,22 +138,16 @@ static bool cut(cutting *c, size_t *number) {
 static bool cut_sheets(cutting *c) {
   size_t faces = c->soup->face_count;
   bool any = false;
-  if (vxm_edge_groups_find(&c->groups, c->state, &c->error) != VXM_OK)
+  if (vxm_edge_groups_find(&c->groups, c->state, &c->error) != VXM_OK ||
+      vxm_rimmed_sheets_find(&c->sheets, c->state, &c->groups, &c->error) != VXM_OK)
     return false;
-  c->patch = scratch(c, faces, sizeof *c->patch);
-  c->marks = c->patch ? scratch(c, faces, sizeof *c->marks) : NULL;
-  c->sheet = c->marks ? scratch(c, faces, sizeof *c->sheet) : NULL;
-  c->open = c->sheet ? scratch(c, faces, sizeof *c->open) : NULL;
+  if (!c->sheets.sheet)
+    return true;
+  c->marks = scratch(c, faces, sizeof *c->marks);
+  c->open = c->marks ? scratch(c, faces, sizeof *c->open) : NULL;
   c->unclosed = c->open ? scratch(c, c->groups.count, sizeof *c->unclosed) : NULL;
   c->at = c->unclosed ? scratch(c, c->state->edges.count, sizeof *c->at) : NULL;
-  if (!c->at || !find_patches(c, &any))
-    return false;
-  if (!any)
-    return true;
-  if (!find_sheets(c) || !join_faces(c, true) || !look_at_edges(c))
-    return false;
-  any = false;
-  if (!choose(c, &any))
+  if (!c->at || !look_at_edges(c) || !choose(c, &any))
     return false;
   size_t *number = any ? scratch(c, c->soup->vertex_count, sizeof *number) : NULL;
   bool done = !any || (number && cut(c, number));
@@ -293,20 +155,19 @@ static bool cut_sheets(cutting *c) {
   return done;
 }
 
-vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_error *error) {
+static vxm_status cut_off(vxm_repair_state *state, bool of_closed, int64_t *added, vxm_error *error) {
   *added = 0;
   vxm_status status = vxm_repair_state_edges(state, error);
   if (status != VXM_OK || !may_hang(&state->edges))
     return status;
-  cutting c = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
+  cutting c = {.state = state, .soup = state->soup, .of_closed = of_closed, .error = VXM_ERROR_INIT};
   size_t before = state->soup->vertex_count;
   bool done = cut_sheets(&c);
   vxm_free(state->context, c.at);
   vxm_free(state->context, c.unclosed);
   vxm_free(state->context, c.open);
-  vxm_free(state->context, c.sheet);
   vxm_free(state->context, c.marks);
-  vxm_free(state->context, c.patch);
+  vxm_rimmed_sheets_destroy(&c.sheets, state->context);
   vxm_edge_groups_destroy(&c.groups, state->context);
   *added = (int64_t)(state->soup->vertex_count - before);
   if (*added > 0)
@@ -314,4 +175,41 @@ vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_e
   if (!done)
     vxm_error_pass(error, &c.error);
   return done ? VXM_OK : c.error.code;
+}
+
+vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_error *error) {
+  return cut_off(state, false, added, error);
+}
+
+/* ---- For a while ---- */
+
+vxm_status vxm_take_sheets_off(vxm_hung_sheets *off, vxm_repair_state *state, vxm_error *error) {
+  *off = (vxm_hung_sheets){0};
+  vxm_status status = vxm_repair_state_edges(state, error);
+  if (status != VXM_OK || !may_hang(&state->edges))
+    return status;
+  const vxm_soup *soup = state->soup;
+  int64_t added = 0;
+  off->vertex_count = soup->vertex_count;
+  off->indices = vxm_repair_state_scratch(state, soup->corner_count, sizeof *off->indices, &status, error);
+  if (!off->indices)
+    return status;
+  memcpy(off->indices, soup->indices, soup->corner_count * sizeof *off->indices);
+  status = cut_off(state, true, &added, error);
+  if (added == 0) {
+    vxm_free(state->context, off->indices);
+    off->indices = NULL;
+  }
+  return status;
+}
+
+void vxm_hang_sheets_again(vxm_hung_sheets *off, vxm_repair_state *state) {
+  if (!off->indices)
+    return;
+  vxm_soup *soup = state->soup;
+  memcpy(soup->indices, off->indices, soup->corner_count * sizeof *off->indices);
+  soup->vertex_count = off->vertex_count;
+  vxm_free(state->context, off->indices);
+  off->indices = NULL;
+  vxm_repair_state_touch(state);
 }

@@ -3,8 +3,8 @@
 
 #include "mesh/geometry.h"
 #include "mesh/point_in_mesh.h"
+#include "repair/bodies/rimmed_sheets.h"
 #include "repair/manifold/radial_sort.h"
-#include "repair/state/edge_groups.h"
 
 #include <string.h>
 
@@ -135,15 +135,31 @@ static bool looks_out(walling *w, size_t face, size_t side) {
   return w->volume[vxm_set_of(w->space, 2 * face + side)] > NO_VOLUME * g->area * w->frame.diagonal;
 }
 
-/** What looks out and has a rim may be a sheet, or what is left of a body that is open: then nobody knows
- * what was meant. */
-static void find_rims(walling *w) {
-  for (size_t f = 0; f < w->soup->face_count; f++) {
+/** Whether a face looks out and has an edge to itself. */
+static bool has_outer_rim(walling *w, size_t face) {
+  bool rim = false;
+  for (uint64_t c = w->soup->offsets[face]; c < w->soup->offsets[face + 1] && !rim; c++)
+    rim = w->groups.sides[c] != VXM_NO_EDGE && w->edges[w->groups.sides[c]].count == 1;
+  return rim && (looks_out(w, face, 0) || looks_out(w, face, 1));
+}
+
+/** What looks out and has a rim may be what is left of a body that is open: then nobody knows what was meant.
+ * But sheets that hang on the skin bound nothing. */
+static vxm_status find_rims(walling *w, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  vxm_rimmed_sheets sheets = {0};
+  bool known = false;
+  for (size_t f = 0; f < w->soup->face_count && status == VXM_OK; f++) {
     finding *g = finding_of(w, f);
-    for (uint64_t c = w->soup->offsets[f]; c < w->soup->offsets[f + 1] && g->asked && !g->unclear; c++)
-      g->unclear = w->groups.sides[c] != VXM_NO_EDGE && w->edges[w->groups.sides[c]].count == 1 &&
-                   (looks_out(w, f, 0) || looks_out(w, f, 1));
+    if (!g->asked || g->unclear || !has_outer_rim(w, f))
+      continue;
+    if (!known)
+      status = vxm_rimmed_sheets_find(&sheets, w->state, &w->groups, error);
+    known = true;
+    g->unclear = !sheets.sheet || !sheets.sheet[f];
   }
+  vxm_rimmed_sheets_destroy(&sheets, w->state->context);
+  return status;
 }
 
 /* ---- Whether walls lie within the skin ---- */
@@ -294,14 +310,18 @@ static vxm_status leave_walls_out(walling *w, bool *changed, vxm_error *error) {
   if (status != VXM_OK)
     return status;
   find_outers(w);
-  find_rims(w);
-  return leave_skin(w, changed, error);
+  status = find_rims(w, error);
+  return status == VXM_OK ? leave_skin(w, changed, error) : status;
+}
+
+bool vxm_inner_walls_go(const vxm_repair_state *state) {
+  return (state->divides || vxm_repair_state_reaches(state, VXM_LEVEL_CLOSED)) &&
+         !state->options.keep_orientation;
 }
 
 vxm_status vxm_pass_inner_walls(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!(state->divides || vxm_repair_state_reaches(state, VXM_LEVEL_CLOSED)) ||
-      state->options.keep_orientation)
+  if (!vxm_inner_walls_go(state))
     return VXM_OK;
   vxm_status status = vxm_repair_state_count_edges(state, error);
   if (status != VXM_OK || state->edges.odd == state->edges.open)

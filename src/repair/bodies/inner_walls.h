@@ -17,14 +17,18 @@
  * wall and goes; a face with one side that does is skin, and is turned as most of the skin is. So all
  * chambers are filled; cavities in groups of their own are not touched.
  *
- * A group stays as it is where a face that looks out has an edge to itself, as sheets and open bodies do;
- * where faces lie upon each other at an edge; and where there is not just one outer space, or a wall does not
- * lie within the skin, as where faces cut through each other.
+ * Sheets that hang on the skin look out on both sides and stay (repair/bodies/rimmed_sheets.h). A group stays
+ * as it is where another face that looks out has an edge to itself, as those of open bodies do; where faces
+ * lie upon each other at an edge; and where there is not just one outer space, or a wall does not lie within
+ * the skin, as where faces cut through each other.
  *
  * That happens at VXM_LEVEL_CLOSED and above, and before a mesh is voxelized (state->divides).
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_pass_inner_walls(vxm_repair_state *state, bool *changed, vxm_error *error);
+
+/** Whether walls go from this repair at all. */
+bool vxm_inner_walls_go(const vxm_repair_state *state);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/duplicate_faces.h"
+#include "repair/bodies/hanging_sheets.h"
 #include "repair/clean/repeated_faces.h"
 
 /** What is counted: faces that go, and how many stay beside another one with the same corners. */
@@ -19,6 +20,18 @@ static void count_faces(vxm_repair_state *state, const vxm_copies *copies, const
   state->counts[VXM_PASS_OPPOSITE_DUPLICATES] += opposite;
 }
 
+/** Marks those that are to go. A sheet that hangs on a closed body does not make it an open one, of which but
+ * one of several equal faces would stay. */
+static vxm_status mark_repeated(vxm_repair_state *state, const vxm_copies *copies, uint8_t *remove,
+                                vxm_error *error) {
+  vxm_hung_sheets off;
+  vxm_status status = vxm_take_sheets_off(&off, state, error);
+  if (status == VXM_OK)
+    status = vxm_repeated_faces_mark(state, copies, remove, error);
+  vxm_hang_sheets_again(&off, state);
+  return status;
+}
+
 /** Decides about them, and takes out those that are not needed; fills `kinds` and `copies`, which are scratch
  * per face. */
 static vxm_status remove_repeated(vxm_repair_state *state, uint8_t *kinds, vxm_copies *copies, bool *changed,
@@ -32,7 +45,7 @@ static vxm_status remove_repeated(vxm_repair_state *state, uint8_t *kinds, vxm_c
   if (remove)
     seen = vxm_repair_state_scratch(state, faces, sizeof *seen, &status, error);
   if (seen)
-    status = vxm_repeated_faces_mark(state, copies, remove, error);
+    status = mark_repeated(state, copies, remove, error);
   if (status == VXM_OK) {
     count_faces(state, copies, kinds, remove, seen);
     *changed = vxm_repair_state_remove_faces(state, remove) > 0;

@@ -3,6 +3,8 @@
 
 #include "mesh/duplicate_faces.h"
 #include "mesh/sort.h"
+#include "repair/bodies/inner_walls.h"
+#include "repair/bodies/rimmed_sheets.h"
 #include "repair/clean/triangulated_polygons.h"
 #include "repair/state/edge_groups.h"
 #include "repair/state/face_subset.h"
@@ -29,7 +31,8 @@ typedef struct group_sums {
   bool asked;          /**< polygons are there twice */
   double volume, area; /**< of a balanced one */
   size_t faces, again; /**< how many; how many of them are there already, or will be */
-  bool open;           /**< without those, an edge has an odd number of sides */
+  bool open; /**< without those, an edge has an odd number of sides; where walls go, one side if sheets that
+                hang go, too */
 } group_sums;
 
 /** A side on a border. */
@@ -247,8 +250,14 @@ static void add_volume(aligning *a, size_t face) {
   g->area += vxm_vec3_length(area);
 }
 
-/** Sums up the groups asked for; `odd` is scratch per edge. */
-static void sum_up(aligning *a, uint8_t *odd) {
+/** Whether an edge with so many sides, as sum_up counts them, is open; three are those of a wall. */
+static bool is_open(const aligning *a, uint8_t count) {
+  return vxm_inner_walls_go(a->state) ? count == 1 : count % 2 == 1;
+}
+
+/** Sums up the groups asked for; `count` is scratch per edge: up to 1, then 2 for an even and 3 for an odd
+ * number. */
+static void sum_up(aligning *a, const uint8_t *sheet, uint8_t *count) {
   for (size_t i = 0; i < a->member_count; i++)
     a->again[face_of(a, &a->members[i])] |= a->twins[a->members[i].polygon].turn != 0;
   for (size_t f = 0; f < a->soup->face_count; f++) {
@@ -260,37 +269,41 @@ static void sum_up(aligning *a, uint8_t *odd) {
     if (a->groups.groups[a->groups.of_face[f]].balanced)
       add_volume(a, f);
     for (uint64_t c = a->soup->offsets[f]; c < a->soup->offsets[f + 1] && !a->again[f]; c++)
-      if (a->sides[c] != VXM_NO_EDGE)
-        odd[a->sides[c]] ^= 1;
+      if (a->sides[c] != VXM_NO_EDGE && !(sheet && sheet[f]))
+        count[a->sides[c]] = count[a->sides[c]] == 0 ? 1 : count[a->sides[c]] == 2 ? 3 : 2;
   }
   for (size_t f = 0; f < a->soup->face_count; f++)
     for (uint64_t c = a->soup->offsets[f]; c < a->soup->offsets[f + 1] && group_of(a, f)->asked; c++)
-      if (!a->again[f] && a->sides[c] != VXM_NO_EDGE && odd[a->sides[c]])
+      if (!a->again[f] && a->sides[c] != VXM_NO_EDGE && is_open(a, count[a->sides[c]]))
         group_of(a, f)->open = true;
 }
 
 static vxm_status measure_groups(aligning *a, vxm_error *error) {
+  vxm_rimmed_sheets sheets = {0};
+  uint8_t *count = NULL;
   vxm_status status = vxm_edge_groups_find(&a->groups, a->state, error);
-  uint8_t *odd = NULL;
+  if (status == VXM_OK && vxm_inner_walls_go(a->state))
+    status = vxm_rimmed_sheets_find(&sheets, a->state, &a->groups, error);
   if (status == VXM_OK)
     a->sums = vxm_repair_state_scratch(a->state, a->groups.count, sizeof *a->sums, &status, error);
   if (a->sums)
     a->again = vxm_repair_state_scratch(a->state, a->soup->face_count, sizeof *a->again, &status, error);
   if (a->again)
-    odd = vxm_repair_state_scratch(a->state, a->state->edges.count, sizeof *odd, &status, error);
-  if (odd) {
+    count = vxm_repair_state_scratch(a->state, a->state->edges.count, sizeof *count, &status, error);
+  if (count) {
     ask_for_groups(a);
     status = mark_repeated(a, error);
   }
-  if (odd && status == VXM_OK)
-    sum_up(a, odd);
-  vxm_free(a->state->context, odd);
+  if (count && status == VXM_OK)
+    sum_up(a, sheets.sheet, count);
+  vxm_free(a->state->context, count);
+  vxm_rimmed_sheets_destroy(&sheets, a->state->context);
   return status;
 }
 
 /** Whether polygons of a group are there twice as those of a body that is drawn twice, in whole or in part:
- * without the others it is closed, or they are a third or more of its faces. Where winding numbers are whole
- * and there is a volume they are rather of bodies that touch or overlap. */
+ * without the others it is closed, or divided by walls, or they are a third or more of its faces. Where
+ * winding numbers are whole and there is a volume they are rather of bodies that touch or overlap. */
 static bool is_drawn_twice(const aligning *a, size_t group) {
   const group_sums *g = &a->sums[group];
   if (a->groups.groups[group].balanced && fabs(g->volume) > NO_VOLUME * g->area * a->frame.diagonal)

@@ -17,7 +17,9 @@
  *
  * That is done in groups of faces (repair/state/edge_groups.h) that are closed if each polygon is taken once,
  * or where a third of the faces or more are there already, but for those that are balanced and have a volume:
- * bodies that touch or overlap are told from each other as they are.
+ * bodies that touch or overlap are told from each other as they are. Where inner walls are to go
+ * (repair/bodies/inner_walls.h) it is enough that no edge has just one side then, sheets that hang left
+ * aside.
  *
  * @param[out] changed whether there were any
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
