@@ -216,6 +216,46 @@ static void test_not_step(void **state) {
   bytes_free(&b);
 }
 
+/** Under every memory limit the whole comes, or a message that tells of the limit: no face is left out. */
+static void limit_memory(const bytes *b, double deflection) {
+  enum { LEAST = 1 << 20, MOST = 256 << 20 };
+  vxm_mesh_read_options options = VXM_MESH_READ_OPTIONS_INIT;
+  options.deflection = deflection;
+  vxm_soup *whole = read_with(b, "a.step", deflection);
+  int refused = 0, reads = 0;
+  for (size_t limit = LEAST; limit < MOST; limit += limit / 2) {
+    vxm_context_options context_options = VXM_CONTEXT_OPTIONS_INIT;
+    context_options.memory_limit = limit;
+    vxm_context *context;
+    vxm_error error = VXM_ERROR_INIT;
+    vxm_soup *soup;
+    assert_int_equal(vxm_context_create(&context, &context_options, NULL), VXM_OK);
+    vxm_status status = vxm_meshio_read(&soup, context, b->data, b->size, "a.step", &options, &error);
+    if (status == VXM_OK) {
+      expect_no_warnings(soup);
+      expect_counts(soup, whole->vertex_count, whole->face_count);
+      vxm_soup_destroy(soup);
+      reads++;
+    } else if (status != VXM_ERROR_MEMORY_LIMIT)
+      fail_msg("under a limit of %zu bytes: %s", limit, error.text);
+    else
+      refused++;
+    vxm_context_destroy(context);
+  }
+  assert_true(refused > 0 && reads > 0);
+  vxm_soup_destroy(whole);
+}
+
+static void test_memory_limits(void **state) {
+  (void)state;
+  if (!vxm_module_exists("occt") || SANITIZED)
+    skip();
+  bytes b = scene_bytes(scene_write_step);
+  limit_memory(&b, 0);
+  limit_memory(&b, 1e-6);
+  bytes_free(&b);
+}
+
 static int stop(const char *phase, double fraction, void *payload) {
   (void)phase;
   (void)fraction;
@@ -265,10 +305,11 @@ static void test_in_process(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_stool),  cmocka_unit_test(test_deflection), cmocka_unit_test(test_units),
-      cmocka_unit_test(test_names),  cmocka_unit_test(test_cancel),     cmocka_unit_test(test_not_step),
-      cmocka_unit_test(test_damage), cmocka_unit_test(test_bodies),     cmocka_unit_test(test_in_process)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stool),      cmocka_unit_test(test_deflection),
+                                     cmocka_unit_test(test_units),      cmocka_unit_test(test_names),
+                                     cmocka_unit_test(test_cancel),     cmocka_unit_test(test_not_step),
+                                     cmocka_unit_test(test_damage),     cmocka_unit_test(test_bodies),
+                                     cmocka_unit_test(test_in_process), cmocka_unit_test(test_memory_limits)};
   leave_signals_alone();
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
