@@ -157,6 +157,29 @@ static void test_names(void **state) {
   bytes_free(&b);
 }
 
+/** What a program counts uses by is no name, unless it stands where names do. */
+static void test_counted_uses(void **state) {
+  (void)state;
+  static const char *const tags[] = {"seat", "leg#1", "7", "leg#2", "leg#3", NULL};
+  static const char *const changes[][2] = {
+      {"('NAUO1','',", "('9','',"},
+      {"('NAUO2','',", "('10','10',"},
+      {"('NAUO3','',", "('11','7',"},
+  };
+  if (!vxm_module_exists("occt"))
+    skip();
+  bytes b = scene_bytes(scene_write_step);
+  for (size_t c = 0; c < sizeof changes / sizeof *changes; c++) {
+    bytes changed = replaced(&b, changes[c][0], changes[c][1]);
+    bytes_free(&b);
+    b = changed;
+  }
+  vxm_soup *soup = read_with(&b, "a.step", 0);
+  expect_tags(soup, tags);
+  vxm_soup_destroy(soup);
+  bytes_free(&b);
+}
+
 /** The number of the entity whose text holds `part`, the `nth` of those. */
 static int entity_with(const bytes *b, const char *part, int nth) {
   const char *text = (const char *)b->data, *at = text;
@@ -305,11 +328,12 @@ static void test_in_process(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stool),      cmocka_unit_test(test_deflection),
-                                     cmocka_unit_test(test_units),      cmocka_unit_test(test_names),
-                                     cmocka_unit_test(test_cancel),     cmocka_unit_test(test_not_step),
-                                     cmocka_unit_test(test_damage),     cmocka_unit_test(test_bodies),
-                                     cmocka_unit_test(test_in_process), cmocka_unit_test(test_memory_limits)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stool),        cmocka_unit_test(test_deflection),
+                                     cmocka_unit_test(test_units),        cmocka_unit_test(test_names),
+                                     cmocka_unit_test(test_cancel),       cmocka_unit_test(test_not_step),
+                                     cmocka_unit_test(test_damage),       cmocka_unit_test(test_bodies),
+                                     cmocka_unit_test(test_in_process),   cmocka_unit_test(test_counted_uses),
+                                     cmocka_unit_test(test_memory_limits)};
   leave_signals_alone();
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
