@@ -7,9 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "base/context.h"
+#include "sandbox/alloc_failure.h"
 #include "sandbox/confine.h"
 #include "sandbox/memory_name.h"
 #include "sandbox/reader_process.h"
@@ -88,6 +90,15 @@ static vxm_status send_grid(vxm_context *context, const vxm_reader *reader, cons
   return status == VXM_OK && !vxm_wire_send_end(&sender) ? cut_off(error) : status;
 }
 
+/** Libraries may make something of the file all the same, and leave out what there was no memory for: they
+ * get no turn any more, not even at the end of the program. */
+static void end_starved(void) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_fail(&error, VXM_ERROR_MEMORY, "not enough memory to read the file");
+  vxm_wire_send_failure(CHANNEL, &error);
+  syscall(SYS_exit_group, 0);
+}
+
 static uint64_t number(char **arguments, int which) {
   return strtoull(arguments[which], NULL, 10);
 }
@@ -137,6 +148,7 @@ static vxm_status serve(vxm_context *context, char **arguments, vxm_error *error
                                        .seconds = number(arguments, VXM_READER_ARG_SECONDS)};
   reader->prepare();
   const char *missing = vxm_confine(&confinement);
+  vxm_alloc_failure_ends(end_starved);
   if (missing) {
     vxm_warnings warnings = {.count = 0};
     vxm_warn(&warnings, "the reader could not be confined as usual: %s", missing);

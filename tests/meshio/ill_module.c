@@ -56,6 +56,42 @@ static vxm_status take_all(vxm_soup *soup, vxm_error *error) {
   }
 }
 
+static void *volatile block; /* so that nothing is left out as useless */
+
+/** Asks for more than there is, in the way that stands behind the word, and does without. */
+static void do_without(const vxm_reader_request *request) {
+  size_t much = PTRDIFF_MAX / 2;
+  void *aligned = NULL;
+  switch (request->data[request->size - 1]) {
+  case 'm':
+    block = malloc(much);
+    break;
+  case 'c':
+    block = calloc(much / 16, 16);
+    break;
+  case 'r':
+    block = realloc(block, much);
+    break;
+  case 'a':
+    block = aligned_alloc(64, much);
+    break;
+  case 'p':
+    if (posix_memalign(&aligned, 64, much) == 0)
+      block = aligned;
+    break;
+  }
+}
+
+/** What fails for another reason than want of memory, or does not fail. */
+static void ask_oddly(void) {
+  void *aligned = NULL;
+  errno = ENOMEM;
+  block = realloc(malloc(1), 0);
+  if (posix_memalign(&aligned, 3, 1) == 0)
+    raise(SIGABRT);
+  block = calloc(0, 8);
+}
+
 static vxm_status wait_for_ever(vxm_soup *soup, vxm_error *error) {
   for (double fraction = 0.25;; fraction = 0.5) {
     vxm_status status = vxm_progress(soup->context, "reading", fraction, error);
@@ -335,6 +371,12 @@ static vxm_status obey(vxm_soup *soup, const vxm_reader_request *request, vxm_er
     return wait_for_ever(soup, error);
   if (is_asked(request, "take"))
     return take_all(soup, error);
+  if (is_asked(request, "without") || is_asked(request, "choke"))
+    do_without(request);
+  if (is_asked(request, "choke"))
+    abort();
+  if (is_asked(request, "odd"))
+    ask_oddly();
   if (is_asked(request, "rubbish"))
     send_rubbish();
   if (is_asked(request, "huge") || is_asked(request, "lies"))

@@ -147,6 +147,24 @@ static void test_memory(void **state) {
   vxm_context_destroy(context);
 }
 
+/** Libraries that do without memory leave something out, and others crash: both are for want of memory. */
+static void test_swallowed_failures(void **state) {
+  (void)state;
+  static const char *const words[] = {"without m", "without c", "without r",
+                                      "without a", "without p", "choke m"};
+#if !defined(__GLIBC__) || defined(__SANITIZE_THREAD__)
+  skip();
+#endif
+  if (SANITIZED)
+    skip();
+  for (size_t w = 0; w < sizeof words / sizeof *words; w++)
+    fails(words[w], VXM_ERROR_MEMORY_LIMIT, "dir/a.ill: reading takes more than 512 MiB");
+  vxm_soup *soup;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(ask(&soup, NULL, "odd", 3, &error), VXM_OK);
+  vxm_soup_destroy(soup);
+}
+
 typedef struct progress_log {
   int calls_left;
   double last;
@@ -413,7 +431,8 @@ int main(void) {
                                      cmocka_unit_test(test_attempts),
                                      cmocka_unit_test(test_surroundings),
                                      cmocka_unit_test(test_references),
-                                     cmocka_unit_test(test_relative_modules)};
+                                     cmocka_unit_test(test_relative_modules),
+                                     cmocka_unit_test(test_swallowed_failures)};
   leave_signals_alone();
   alarm(100);
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -157,6 +157,29 @@ static void test_names(void **state) {
   bytes_free(&b);
 }
 
+/** What a program counts uses by is no name, unless it stands where names do. */
+static void test_counted_uses(void **state) {
+  (void)state;
+  static const char *const tags[] = {"seat", "leg#1", "7", "leg#2", "leg#3", NULL};
+  static const char *const changes[][2] = {
+      {"('NAUO1','',", "('9','',"},
+      {"('NAUO2','',", "('10','10',"},
+      {"('NAUO3','',", "('11','7',"},
+  };
+  if (!vxm_module_exists("occt"))
+    skip();
+  bytes b = scene_bytes(scene_write_step);
+  for (size_t c = 0; c < sizeof changes / sizeof *changes; c++) {
+    bytes changed = replaced(&b, changes[c][0], changes[c][1]);
+    bytes_free(&b);
+    b = changed;
+  }
+  vxm_soup *soup = read_with(&b, "a.step", 0);
+  expect_tags(soup, tags);
+  vxm_soup_destroy(soup);
+  bytes_free(&b);
+}
+
 /** The number of the entity whose text holds `part`, the `nth` of those. */
 static int entity_with(const bytes *b, const char *part, int nth) {
   const char *text = (const char *)b->data, *at = text;
@@ -216,6 +239,46 @@ static void test_not_step(void **state) {
   bytes_free(&b);
 }
 
+/** Under every memory limit the whole comes, or a message that tells of the limit: no face is left out. */
+static void limit_memory(const bytes *b, double deflection) {
+  enum { LEAST = 1 << 20, MOST = 256 << 20 };
+  vxm_mesh_read_options options = VXM_MESH_READ_OPTIONS_INIT;
+  options.deflection = deflection;
+  vxm_soup *whole = read_with(b, "a.step", deflection);
+  int refused = 0, reads = 0;
+  for (size_t limit = LEAST; limit < MOST; limit += limit / 2) {
+    vxm_context_options context_options = VXM_CONTEXT_OPTIONS_INIT;
+    context_options.memory_limit = limit;
+    vxm_context *context;
+    vxm_error error = VXM_ERROR_INIT;
+    vxm_soup *soup;
+    assert_int_equal(vxm_context_create(&context, &context_options, NULL), VXM_OK);
+    vxm_status status = vxm_meshio_read(&soup, context, b->data, b->size, "a.step", &options, &error);
+    if (status == VXM_OK) {
+      expect_no_warnings(soup);
+      expect_counts(soup, whole->vertex_count, whole->face_count);
+      vxm_soup_destroy(soup);
+      reads++;
+    } else if (status != VXM_ERROR_MEMORY_LIMIT)
+      fail_msg("under a limit of %zu bytes: %s", limit, error.text);
+    else
+      refused++;
+    vxm_context_destroy(context);
+  }
+  assert_true(refused > 0 && reads > 0);
+  vxm_soup_destroy(whole);
+}
+
+static void test_memory_limits(void **state) {
+  (void)state;
+  if (!vxm_module_exists("occt") || SANITIZED)
+    skip();
+  bytes b = scene_bytes(scene_write_step);
+  limit_memory(&b, 0);
+  limit_memory(&b, 1e-6);
+  bytes_free(&b);
+}
+
 static int stop(const char *phase, double fraction, void *payload) {
   (void)phase;
   (void)fraction;
@@ -265,10 +328,12 @@ static void test_in_process(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_stool),  cmocka_unit_test(test_deflection), cmocka_unit_test(test_units),
-      cmocka_unit_test(test_names),  cmocka_unit_test(test_cancel),     cmocka_unit_test(test_not_step),
-      cmocka_unit_test(test_damage), cmocka_unit_test(test_bodies),     cmocka_unit_test(test_in_process)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stool),        cmocka_unit_test(test_deflection),
+                                     cmocka_unit_test(test_units),        cmocka_unit_test(test_names),
+                                     cmocka_unit_test(test_cancel),       cmocka_unit_test(test_not_step),
+                                     cmocka_unit_test(test_damage),       cmocka_unit_test(test_bodies),
+                                     cmocka_unit_test(test_in_process),   cmocka_unit_test(test_counted_uses),
+                                     cmocka_unit_test(test_memory_limits)};
   leave_signals_alone();
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include <Message_Printer.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <ShapeExtend.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepShape_SolidModel.hxx>
 #include <TCollection_AsciiString.hxx>
 #include <TCollection_ExtendedString.hxx>
@@ -105,6 +106,26 @@ struct load {
   }
 };
 
+bool is_number(const Handle(TCollection_HAsciiString) & text) {
+  return !text.IsNull() && !text->IsEmpty() &&
+         std::string(text->ToCString()).find_first_not_of("0123456789") == std::string::npos;
+}
+
+/** Uses of products that were only counted lose their numbers: the library takes them for names where there
+ * are none. */
+void forget_numbers(const Handle(Interface_InterfaceModel) & model) {
+  Handle(TCollection_HAsciiString) blank = new TCollection_HAsciiString("");
+  for (int e = 1; e <= model->NbEntities(); e++) {
+    Handle(StepRepr_NextAssemblyUsageOccurrence) use =
+        Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(e));
+    if (use.IsNull() || !is_number(use->Id()))
+      continue;
+    if (!use->Name().IsNull() && use->Name()->IsSameString(use->Id()))
+      use->SetName(blank);
+    use->SetId(blank);
+  }
+}
+
 /** Notes the names of bodies beside those of the products that they are or belong to: the library makes an
  * assembly of a product that has several. */
 void name_bodies(const Handle(TDocStd_Document) & document, const Handle(XSControl_WorkSession) & session) {
@@ -137,6 +158,7 @@ void load_step(const load &job) {
   std::istream stream(&buffer);
   if (reader.ChangeReader().ReadStream(job.request->name, stream) != IFSelect_RetDone)
     job.fail("no STEP file");
+  forget_numbers(reader.Reader().WS()->Model());
   Handle(TDocStd_Document) document = job.document;
   bool is_done = reader.Transfer(document, job.progress->Start());
   job.progress->check();
