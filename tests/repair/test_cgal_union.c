@@ -658,7 +658,10 @@ static void crumbs_of_a_cut(void **state) {
     vxm_union_report report;
     vxm_soup *out = unite(soup, NULL, &report);
     assert_int_equal(report.failed, 0);
-    assert_int_equal(out->face_count, thick || alone ? 24 : 12);
+    bool left = false;
+    for (size_t v = 0; v < out->vertex_count; v++)
+      left = left || vxm_position(out, v)[0] == 4;
+    assert_int_equal(left, thick || alone);
     assert_true(fabs(volume_of(out) - 1) < 1e-5);
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
