@@ -117,6 +117,25 @@ static double add_cabinet(vxm_soup *soup, vxm_rng *rng) {
   return volume;
 }
 
+/** A union that is to be right in floats is so without any more rounding. */
+static void unions_in_floats(void **state) {
+  (void)state;
+  vxm_rng rng = {8};
+  const vxm_union_options options = {.single_precision = true};
+  for (int round = 0; round < 10; round++) {
+    vxm_soup *soup = new_soup(context), *out;
+    add_cabinet(soup, &rng);
+    for (size_t i = 0; i < 3 * soup->vertex_count; i++)
+      soup->positions[i] = (double)(float)soup->positions[i];
+    assert_int_equal(cgal->unite(&out, NULL, NULL, soup, &options, NULL), VXM_OK);
+    for (size_t i = 0; i < 3 * out->vertex_count; i++)
+      assert_true(out->positions[i] == (double)(float)out->positions[i]);
+    assert_int_equal(count_meetings(out), 0);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
 static void solids_of_cabinets(void **state) {
   (void)state;
   vxm_rng rng = {7};
@@ -340,7 +359,7 @@ int main(void) {
       cmocka_unit_test(open_parts_among_them), cmocka_unit_test(what_is_not_to_be_combined),
       cmocka_unit_test(wraps_keep_tags),       cmocka_unit_test(counted_beyond_the_list),
       cmocka_unit_test(stopped_anywhere),      cmocka_unit_test(both_halves_of_a_bow),
-      cmocka_unit_test(solids_of_cabinets),
+      cmocka_unit_test(solids_of_cabinets),    cmocka_unit_test(unions_in_floats),
   };
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }
