@@ -4,6 +4,7 @@
 #include "cli/repair_common.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 const char *const repair_levels[] = {"clean", "manifold", "closed", "solid", NULL};
@@ -203,18 +204,21 @@ void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome 
   char list[256] = "", name[40];
   size_t length = 0;
   int64_t count = 0;
+  bool some_open = false;
   for (int64_t i = 0; i < vxm_mesh_part_change_count(outcome->mesh); i++) {
-    if (!vxm_mesh_part_change(outcome->mesh, i)->union_failed || count++ >= NAMED)
+    const vxm_part_change *change = vxm_mesh_part_change(outcome->mesh, i);
+    some_open =
+        some_open || (change->union_failed && !(change->before->closed && change->before->volume != 0));
+    if (!change->union_failed || count++ >= NAMED)
       continue;
     part_name(name, sizeof name, outcome->mesh, i);
     length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", length ? ", " : "", name);
   }
   if (count > NAMED)
     snprintf(list + length, sizeof list - length, " and %" PRId64 " more", count - NAMED);
-  cli_warn(cli,
-           "%s: %" PRId64
-           " parts still cut through others or themselves, and what is open has no inside to unite: %s",
-           cli_shown(input, "<stdin>"), count, list);
+  cli_warn(cli, "%s: %" PRId64 " parts still cut through others or themselves%s: %s",
+           cli_shown(input, "<stdin>"), count, some_open ? ", and what is open has no inside to unite" : "",
+           list);
 }
 
 /** Says why it took long, where a union did. */
@@ -231,11 +235,23 @@ static void say_long(FILE *stream, const repair_outcome *outcome) {
             outcome->seconds, united);
 }
 
+/** Whether the model would have finer numbers at the origin. */
+static bool is_far(const double bounds[6]) {
+  double largest = 0, longest = 0;
+  for (int i = 0; i < 6; i++)
+    largest = fmax(largest, fabs(bounds[i]));
+  for (int i = 0; i < 3; i++)
+    longest = fmax(longest, bounds[i + 3] - bounds[i]);
+  return largest > 2 * longest;
+}
+
 /** Why vertices are together still, and what helps. */
 static void say_unparted(FILE *stream, const repair_outcome *outcome) {
-  const char *why = outcome->single_precision
+  const char *why = outcome->single_precision && is_far(outcome->before.bounds)
                         ? "the numbers of the file are too coarse\n"
                           "  there; write another format than .stl, or move the model to the origin\n"
+                    : outcome->single_precision ? "the numbers of the file are too coarse\n"
+                                                  "  there; write another format than .stl\n"
                     : repair_leaves_slivers(outcome)
                         ? "the union has slivers there that are\n"
                           "  too thin; --level solid takes those away, or leave out --union\n"

@@ -247,12 +247,14 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
   enum { TRIES = sizeof tries / sizeof *tries };
   vxm_before_union before = {.soup = NULL};
   bool short_of = true;
+  int64_t first_failures = 0;
   vxm_status status = vxm_before_union_keep(&before, state, error);
   for (int i = 0; i < TRIES && short_of && status == VXM_OK; i++) {
     status = run_try(state, &before, &tries[i], i + 1, error);
     if (status == VXM_OK)
       status = vxm_union_fell_short(&short_of, state, error);
-    short_of = short_of || (i > 0 && state->union_failures > 0);
+    first_failures = i == 0 ? state->union_failures : first_failures;
+    short_of = short_of || state->union_failures > first_failures;
   }
   if (status == VXM_OK && short_of) { /* then rather what moves nothing */
     status = run_try(state, &before, &tries[0], TRIES + 1, error);

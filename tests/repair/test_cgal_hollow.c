@@ -20,7 +20,7 @@ static void check_walls(const assembly *a, uint64_t seed, vxm_rng *rng) {
   vxm_soup *soup = faces_of(context, a, false, rng), *out;
   vxm_union_report report;
   vxm_error error = VXM_ERROR_INIT;
-  if (cgal->unite(&out, NULL, &report, soup, false, &error) != VXM_OK)
+  if (cgal->unite(&out, NULL, &report, soup, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_united(out);
   assert_int_equal(report.failed, 0);

@@ -296,7 +296,7 @@ static void not_finite(void **state) {
     assert_int_equal(cgal->self_intersections(&pairs, soup, 10, &error), VXM_ERROR_ARGUMENT);
     assert_non_null(strstr(error.text, "vertex 1 is not finite"));
     assert_int_equal(cgal->fill(&out, NULL, &filled, &left, soup, 0, NULL), VXM_ERROR_ARGUMENT);
-    assert_int_equal(cgal->unite(&out, NULL, NULL, soup, false, NULL), VXM_ERROR_ARGUMENT);
+    assert_int_equal(cgal->unite(&out, NULL, NULL, soup, NULL, NULL), VXM_ERROR_ARGUMENT);
     assert_int_equal(cgal->orient(&out, &turned, soup, NULL), VXM_ERROR_ARGUMENT);
     assert_int_equal(cgal->wrap(&out, NULL, soup, 0.1, 0.1, NULL), VXM_ERROR_ARGUMENT);
     assert_null(out);

@@ -8,7 +8,7 @@
 static vxm_soup *unite(const vxm_soup *soup, uint64_t **origin, vxm_union_report *report) {
   vxm_soup *out;
   vxm_error error = VXM_ERROR_INIT;
-  if (cgal->unite(&out, origin, report, soup, false, &error) != VXM_OK)
+  if (cgal->unite(&out, origin, report, soup, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return out;
 }
@@ -643,6 +643,31 @@ static void crumbs(void **state) {
   }
 }
 
+/** What is left of a beam is left out where it is a crumb, beside which the rest is much; but a part that
+ * came in as thin stays. */
+static void crumbs_of_a_cut(void **state) {
+  (void)state;
+  for (int round = 0; round < 3; round++) {
+    vxm_soup *soup = new_soup(context);
+    const bool thick = round == 1, alone = round == 2;
+    const double end = 4 - (thick ? 0x1p-18 : 0x1p-23);
+    if (alone)
+      add_cuboid(soup, end, 0, 0, 4, 1, 1);
+    add_cuboid(soup, 0, 0, 0, alone ? 2 : 4, 1, 1);
+    add_hollow(soup, 1, -1, -1, alone ? 3 : end, 2, 2);
+    vxm_union_report report;
+    vxm_soup *out = unite(soup, NULL, &report);
+    assert_int_equal(report.failed, 0);
+    bool left = false;
+    for (size_t v = 0; v < out->vertex_count; v++)
+      left = left || vxm_position(out, v)[0] == 4;
+    assert_int_equal(left, thick || alone);
+    assert_true(fabs(volume_of(out) - 1) < 1e-5);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** A bent prism that runs through itself: its volume is counted once. */
 static void a_loop(void **state) {
   (void)state;
@@ -815,6 +840,7 @@ int main(void) {
       cmocka_unit_test(crossing_parts),
       cmocka_unit_test(in_a_bow),
       cmocka_unit_test(crumbs),
+      cmocka_unit_test(crumbs_of_a_cut),
       cmocka_unit_test(a_loop),
       cmocka_unit_test(the_same_each_time),
       cmocka_unit_test(tags_are_kept),

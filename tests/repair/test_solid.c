@@ -92,6 +92,69 @@ static void solids_of_noisy_boxes(void **state) {
   assert_true(reached >= ROUNDS * 9 / 10);
 }
 
+/** Five boards, as of a cabinet, of which each lies flat on others but for the rounding of its corners. */
+static double add_cabinet(vxm_soup *soup, vxm_rng *rng) {
+  double t = 4 + 8 * vxm_rng_unit(rng), w = 60 + 50 * vxm_rng_unit(rng), d = 60 + 50 * vxm_rng_unit(rng),
+         h = 60 + 50 * vxm_rng_unit(rng);
+  const double boards[5][6] = {{0, 0, 0, w, d, t},
+                               {0, 0, h - t, w, d, h},
+                               {0, 0, t, t, d, h - t},
+                               {w - t, 0, t, w, d, h - t},
+                               {t, d - t, t, w - t, d, h - t}};
+  const frame3 turned = random_frame(rng);
+  double volume = 0;
+  for (int b = 0; b < 5; b++) {
+    double low[3], high[3], size = 1;
+    for (int a = 0; a < 3; a++) {
+      const double middle = (double[]){w, d, h}[a] / 2;
+      low[a] = boards[b][a] - middle;
+      high[a] = boards[b][a + 3] - middle;
+      size *= high[a] - low[a];
+    }
+    add_box(soup, low, high, &turned, true, false);
+    volume += size;
+  }
+  return volume;
+}
+
+/** A union that is to be right in floats is so without any more rounding. */
+static void unions_in_floats(void **state) {
+  (void)state;
+  vxm_rng rng = {8};
+  const vxm_union_options options = {.single_precision = true};
+  for (int round = 0; round < 10; round++) {
+    vxm_soup *soup = new_soup(context), *out;
+    add_cabinet(soup, &rng);
+    for (size_t i = 0; i < 3 * soup->vertex_count; i++)
+      soup->positions[i] = (double)(float)soup->positions[i];
+    assert_int_equal(cgal->unite(&out, NULL, NULL, soup, &options, NULL), VXM_OK);
+    for (size_t i = 0; i < 3 * out->vertex_count; i++)
+      assert_true(out->positions[i] == (double)(float)out->positions[i]);
+    assert_int_equal(count_meetings(out), 0);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void solids_of_cabinets(void **state) {
+  (void)state;
+  vxm_rng rng = {7};
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_SOLID;
+  for (int round = 0; round < 40; round++) {
+    vxm_soup *soup = new_soup(context);
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+    double volume = add_cabinet(soup, &rng);
+    options.single_precision = round % 4 != 3;
+    vxm_soup *out = repair(soup, &options, &report);
+    assert_int_equal(report.union_failures, 0);
+    assert_solid(out);
+    assert_true(fabs(volume_of(out) - volume) < 1e-4 * volume);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** A surface that runs through itself keeps what it winds round the other way. */
 static void both_halves_of_a_bow(void **state) {
   (void)state;
@@ -296,6 +359,7 @@ int main(void) {
       cmocka_unit_test(open_parts_among_them), cmocka_unit_test(what_is_not_to_be_combined),
       cmocka_unit_test(wraps_keep_tags),       cmocka_unit_test(counted_beyond_the_list),
       cmocka_unit_test(stopped_anywhere),      cmocka_unit_test(both_halves_of_a_bow),
+      cmocka_unit_test(solids_of_cabinets),    cmocka_unit_test(unions_in_floats),
   };
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

@@ -6,19 +6,20 @@
 #include <map>
 
 #include "modules/cgal/outer_boundary.h"
+#include "repair/state/merge_rule.h"
 
 namespace vxm {
 
 namespace {
 
 /*
- * The cut surface is exact; in doubles its thinnest slivers may turn over and meet. If cutting it again for a
- * few rounds does not help, the same is done from the beginning with all points on a lattice, coarser by so
- * many bits than the doubles of the largest coordinate: what is thinner than its spacing is then gone, and
- * what is left has room.
+ * The cut surface is exact; once rounded its thinnest slivers may turn over and meet. If cutting it again for
+ * a few rounds does not help, the same is done from the beginning with all points on a lattice, coarser by so
+ * many bits than the doubles of the largest coordinate (of which 32-bit floats have 29 less): what is thinner
+ * than its spacing is then gone, and what is left has room.
  */
-constexpr int LATTICES[] = {0, 18, 24, 30};
-constexpr int ROUNDS = 3;
+constexpr int LATTICES[] = {0, 18, 24, 30}, SINGLE_LATTICES[] = {0, 31, 33, 35};
+constexpr int ROUNDS = 3, SINGLE_ROUNDS = 6;
 
 /** Collects triangles into a surface without repetitions. */
 class Collector {
@@ -114,9 +115,15 @@ private:
   int everywhere_;
 };
 
-/** One attempt; true if the outcome is good in doubles. */
-bool bound_in_doubles(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
-                      size_t part_count, Material *material, Meter &meter, Skin *out) {
+void round_to_singles(std::vector<Position> *points) {
+  for (Position &p : *points)
+    for (double &x : p)
+      x = vxm_single(x);
+}
+
+/** One attempt; true if the outcome is good in the numbers that are to hold it. */
+bool bound_in_numbers(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
+                      size_t part_count, bool single, Material *material, Meter &meter, Skin *out) {
   Collector input;
   for (const PartTriangle &t : triangles)
     input.add(points, t.corners, Cover{t.part, 1, t.face});
@@ -127,6 +134,8 @@ bool bound_in_doubles(const std::vector<Position> &points, const std::vector<Par
   OnePart rest(material->inside(std::vector<int>(part_count)) ? 1 : 0);
   size_t last = SIZE_MAX;
   for (int round = 0;; round++) {
+    if (single)
+      round_to_singles(&out->points);
     Collector rounded;
     for (size_t t = 0; t < out->corners.size(); t++)
       rounded.add(out->points, out->corners[t], Cover{0, 1, out->face[t]});
@@ -135,7 +144,7 @@ bool bound_in_doubles(const std::vector<Position> &points, const std::vector<Par
     size_t bad = meetings.size() + rounded.dropped();
     if (bad == 0)
       return true;
-    if (bad >= last || round == ROUNDS)
+    if (bad >= last || round == (single ? SINGLE_ROUNDS : ROUNDS))
       return false;
     last = bad;
     /* The surface is that of the material now, a part by itself. */
@@ -148,9 +157,9 @@ bool bound_in_doubles(const std::vector<Position> &points, const std::vector<Par
 } // namespace
 
 bool bound_solid(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
-                 size_t part_count, Material *material, Meter &meter, Skin *out) {
-  for (int bits : LATTICES)
-    if (bound_in_doubles(on_lattice(points, bits), triangles, part_count, material, meter, out))
+                 size_t part_count, bool single, Material *material, Meter &meter, Skin *out) {
+  for (int bits : single ? SINGLE_LATTICES : LATTICES)
+    if (bound_in_numbers(on_lattice(points, bits), triangles, part_count, single, material, meter, out))
       return true;
   return false;
 }

@@ -24,10 +24,11 @@ enum class Fate {
   covered, /**< all of it lies in the material of other parts */
   rebuilt, /**< the surface of its union is in the result */
   failed,  /**< kept as it is, because nothing else could be done */
-  crumb    /**< left out: what is thinner than numbers tell, turned inside out by rounding */
+  crumb    /**< left out: what is thinner than numbers tell, and was not so before */
 };
 
-/** Of the largest coordinate: a cavity without a solid around it that is no thicker is a crumb of a union. */
+/** Of the largest coordinate: a part that a union leaves, or a cavity without a solid around it, is a crumb
+ * if it is no thicker. */
 constexpr double CRUMB = 0x1p-22;
 
 double area_of(const std::vector<Position> &points, const Corners &corners) {
@@ -40,23 +41,45 @@ double area_of(const std::vector<Position> &points, const Corners &corners) {
   return std::hypot(across[0], across[1], across[2]) / 2;
 }
 
+/** Per part: whether it is closed and no thicker than a crumb. How thick a body is, tells its volume for its
+ * surface: six times that of a cube is its side. */
+std::vector<bool> thin_parts(const Triangles &triangles, const Parts &parts) {
+  double largest = 0;
+  for (const Position &p : triangles.points)
+    for (double x : p)
+      largest = std::max(largest, std::abs(x));
+  std::vector<double> area(parts.parts.size(), 0);
+  for (size_t t = 0; t < triangles.corners.size(); t++)
+    area[parts.of_face[triangles.face[t]]] += area_of(triangles.points, triangles.corners[t]);
+  std::vector<bool> out(parts.parts.size());
+  for (size_t p = 0; p < out.size(); p++)
+    out[p] = parts.parts[p].closed && 6 * parts.parts[p].volume <= CRUMB * largest * area[p];
+  return out;
+}
+
 /** Takes the parts of a soup once and unites those that touch. */
 class Union {
 public:
-  Union(const vxm_soup *soup, const Triangles &triangles, const Parts &parts, Meter &meter)
-      : soup_(soup), triangles_(triangles), parts_(parts), meter_(meter), result_(soup, meter),
-        triangles_of_group_(parts.groups.size()), skins_(parts.groups.size()),
-        fates_(parts.groups.size(), Fate::kept), altered_(parts.parts.size()) {
+  /**
+   * @param thin   per part, as from thin_parts
+   * @param crumbs per part: it is left out
+   */
+  Union(const vxm_soup *soup, const Triangles &triangles, const Parts &parts, const std::vector<bool> &thin,
+        const std::vector<bool> &crumbs, bool single, Meter &meter)
+      : soup_(soup), triangles_(triangles), parts_(parts), thin_(thin), crumbs_(crumbs), single_(single),
+        meter_(meter), result_(soup, meter), triangles_of_group_(parts.groups.size()),
+        skins_(parts.groups.size()), fates_(parts.groups.size(), Fate::kept), altered_(parts.parts.size()) {
     for (uint32_t t = 0; t < triangles.corners.size(); t++)
-      triangles_of_group_[group_of(triangles.face[t])].push_back(t);
+      if (!crumbs[parts.of_face[triangles.face[t]]])
+        triangles_of_group_[group_of(triangles.face[t])].push_back(t);
   }
 
-  /** Whether rounding has left some that are to be left out. */
+  /** Whether there are some that are to be left out. */
   bool has_crumbs() const {
-    for (uint32_t g = 0; g < parts_.groups.size(); g++)
-      if (has_only_cavities(parts_.groups[g]) && is_crumb(g))
-        return true;
-    return false;
+    return std::find(crumbs_.begin(), crumbs_.end(), true) != crumbs_.end() ||
+           std::any_of(parts_.groups.begin(), parts_.groups.end(), [this](const Group &group) {
+             return has_only_cavities(group) && are_all(group, thin_);
+           });
   }
 
   void run() {
@@ -91,7 +114,7 @@ public:
   Owner finish(std::vector<uint64_t> *origin) {
     for (size_t f = 0; f < soup_->face_count; f++) {
       Fate fate = fates_[group_of(f)];
-      if (fate == Fate::kept || fate == Fate::failed)
+      if ((fate == Fate::kept || fate == Fate::failed) && !crumbs_[parts_.of_face[f]])
         result_.keep(f);
     }
     return Owner(result_.finish(origin));
@@ -135,6 +158,8 @@ private:
 
   Fate settle(uint32_t g) {
     const Group &group = parts_.groups[g];
+    if (are_all(group, crumbs_))
+      return Fate::crumb;
     if (parts_.parts[group.parts[0]].sign == 0)
       return Fate::kept;
     std::vector<uint32_t> bodies = bodies_around(group);
@@ -144,7 +169,7 @@ private:
     if (!bodies.empty() && !cavity_of_body)
       return Fate::covered;
     if (bodies.empty() && has_only_cavities(group))
-      return is_crumb(g) ? Fate::crumb : Fate::failed;
+      return are_all(group, thin_) ? Fate::crumb : Fate::failed;
     if (group.parts.size() == 1 && !group.meets)
       return Fate::kept;
     return rebuild(g, bodies.empty() ? NO_PART : bodies[0]);
@@ -155,17 +180,10 @@ private:
                        [this](uint32_t part) { return parts_.parts[part].sign < 0; });
   }
 
-  /** How thick a body is, tells its volume for its surface: six times that of a cube is its side. */
-  bool is_crumb(uint32_t g) const {
-    double largest = 0, area = 0, volume = 0;
-    for (const Position &p : triangles_.points)
-      for (double x : p)
-        largest = std::max(largest, std::abs(x));
-    for (uint32_t t : triangles_of_group_[g])
-      area += area_of(triangles_.points, triangles_.corners[t]);
-    for (uint32_t part : parts_.groups[g].parts)
-      volume += parts_.parts[part].volume;
-    return 6 * volume <= CRUMB * largest * area;
+  /** @param marks per part */
+  static bool are_all(const Group &group, const std::vector<bool> &marks) {
+    return std::all_of(group.parts.begin(), group.parts.end(),
+                       [&marks](uint32_t part) { return marks[part]; });
   }
 
   Fate rebuild(uint32_t g, uint32_t body) {
@@ -179,7 +197,7 @@ private:
     Skin &skin = skins_[g];
     GroupMaterial material(parts_, group, body);
     try {
-      if (!bound_solid(triangles_.points, triangles, group.size(), &material, meter_, &skin))
+      if (!bound_solid(triangles_.points, triangles, group.size(), single_, &material, meter_, &skin))
         return Fate::failed;
     } catch (const std::bad_alloc &) {
       throw; /* also to stop */
@@ -205,6 +223,8 @@ private:
   const vxm_soup *soup_;
   const Triangles &triangles_;
   const Parts &parts_;
+  const std::vector<bool> &thin_, &crumbs_; /**< per part */
+  bool single_;
   Meter &meter_;
   Result result_;
   std::vector<std::vector<uint32_t>> triangles_of_group_;
@@ -220,8 +240,8 @@ private:
  */
 class Passes {
 public:
-  Passes(const vxm_soup *soup, bool outward_only, Meter &meter)
-      : soup_(soup), outward_only_(outward_only), meter_(meter), origin_(soup->face_count) {
+  Passes(const vxm_soup *soup, const vxm_union_options &options, Meter &meter)
+      : soup_(soup), options_(options), meter_(meter), origin_(soup->face_count) {
     std::iota(origin_.begin(), origin_.end(), UINT64_C(0));
   }
 
@@ -229,13 +249,15 @@ public:
     for (int pass = 0; pass < PASSES; pass++) {
       const vxm_soup *now = made_ != nullptr ? made_.get() : soup_;
       Triangles triangles = triangles_of(now, Naming::by_position, meter_);
-      Parts parts = parts_of(now, triangles, outward_only_, meter_);
-      Union step(now, triangles, parts, meter_);
+      Parts parts = parts_of(now, triangles, options_.outward_only, meter_);
+      std::vector<bool> thin = thin_parts(triangles, parts);
       if (pass == 0)
-        start(parts);
-      else if (std::none_of(parts.groups.begin(), parts.groups.end(),
-                            [](const Group &g) { return g.meets; }) &&
-               !step.has_crumbs())
+        start(parts, thin);
+      std::vector<bool> crumbs = crumbs_of(parts, thin);
+      Union step(now, triangles, parts, thin, crumbs, options_.single_precision, meter_);
+      if (pass > 0 &&
+          std::none_of(parts.groups.begin(), parts.groups.end(), [](const Group &g) { return g.meets; }) &&
+          !step.has_crumbs())
         return;
       step.run();
       note(parts, step);
@@ -271,14 +293,25 @@ private:
 
   /** What is known of a part of the input. */
   struct Known {
-    bool closed, rebuilt, united, failed;
+    bool closed, thin, rebuilt, united, failed;
     uint64_t first_face;
   };
 
-  void start(const Parts &parts) {
+  void start(const Parts &parts, const std::vector<bool> &thin) {
     of_face_ = parts.of_face;
-    for (const Part &part : parts.parts)
-      known_.push_back({part.closed, false, false, false, part.first_face});
+    for (uint32_t p = 0; p < parts.parts.size(); p++)
+      known_.push_back({parts.parts[p].closed, thin[p], false, false, false, parts.parts[p].first_face});
+  }
+
+  /** Per part: whether it is thin, and left of such as were closed and were not thin. */
+  std::vector<bool> crumbs_of(const Parts &parts, const std::vector<bool> &thin) const {
+    std::vector<bool> out = thin;
+    for (size_t f = 0; f < origin_.size(); f++) {
+      const Known &from = known_[of_face_[origin_[f]]];
+      if (from.thin || !from.closed)
+        out[parts.of_face[f]] = false;
+    }
+    return out;
   }
 
   /** Nothing was there to be done. */
@@ -305,7 +338,7 @@ private:
   }
 
   const vxm_soup *soup_;
-  bool outward_only_;
+  vxm_union_options options_;
   Meter &meter_;
   Owner made_;
   std::vector<uint64_t> origin_;
@@ -316,7 +349,7 @@ private:
 } // namespace
 
 vxm_status unite(vxm_soup **out, uint64_t **origin, vxm_union_report *report, const vxm_soup *soup,
-                 bool outward_only, vxm_error *error) {
+                 const vxm_union_options *options, vxm_error *error) {
   *out = nullptr;
   if (origin != nullptr)
     *origin = nullptr;
@@ -324,7 +357,7 @@ vxm_status unite(vxm_soup **out, uint64_t **origin, vxm_union_report *report, co
   vxm_union_report *told = report != nullptr ? report : &local;
   *told = vxm_union_report();
   return guarded(soup->context, "looking for parts that touch", error, [&](Meter &meter) {
-    Passes passes(soup, outward_only, meter);
+    Passes passes(soup, options != nullptr ? *options : vxm_union_options(), meter);
     passes.run();
     passes.finish(out, origin, told);
   });

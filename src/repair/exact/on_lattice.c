@@ -80,7 +80,7 @@ vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_unio
 }
 
 vxm_status vxm_union_fell_short(bool *out, const vxm_repair_state *state, vxm_error *error) {
-  *out = state->unparted_vertices > 0 && state->union_failures == 0;
+  *out = state->union_failures > 0 ? state->union_may_succeed : state->unparted_vertices > 0;
   if (*out || state->union_failures > 0)
     return VXM_OK;
   vxm_face_pairs pairs;

@@ -24,8 +24,8 @@ vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_unio
  * tell. */
 vxm_status vxm_snap_to_lattice(vxm_repair_state *state, bool *changed, vxm_error *error);
 
-/** Whether faces cut through each other, or vertices could not be kept apart, although all parts were united
- * that had to be. */
+/** Whether another try may do better: faces cut through each other, or vertices could not be kept apart,
+ * although all parts were united that had to be; or parts were not that have an inside. */
 vxm_status vxm_union_fell_short(bool *out, const vxm_repair_state *state, vxm_error *error);
 
 #endif

@@ -5,12 +5,15 @@
 #include "repair/state/repair_state.h"
 #include "repair/state/self_intersections.h"
 
+/** Why a component is left. */
+enum { FAILED = 1, CROSSING = 2 };
+
 /** What the union leaves as it was although it cuts through something. */
 typedef struct leaving {
   vxm_repair_state *state;
   const uint64_t *origin; /**< per face of the united soup */
   uint32_t *component;    /**< the same */
-  uint8_t *left;          /**< per component */
+  uint8_t *left;          /**< per component: FAILED, CROSSING */
   size_t count;
 } leaving;
 
@@ -23,7 +26,7 @@ static vxm_status mark_failed(leaving *l, const vxm_soup *soup, const vxm_union_
     failed[report->failed_faces[i]] = 1;
   for (size_t f = 0; failed && f < soup->face_count; f++)
     if (l->origin[f] != VXM_NO_FACE && failed[l->origin[f]])
-      l->left[l->component[f]] = 1;
+      l->left[l->component[f]] |= FAILED;
   vxm_free(l->state->context, failed);
   return status;
 }
@@ -32,8 +35,10 @@ static vxm_status mark_failed(leaving *l, const vxm_soup *soup, const vxm_union_
 static vxm_status mark_crossing(leaving *l, const vxm_soup *soup, vxm_error *error) {
   vxm_face_pairs pairs;
   vxm_status status = vxm_self_intersections_find(&pairs, soup, VXM_CROSSINGS_MOST, error);
-  for (size_t i = 0; i < pairs.count; i++)
-    l->left[l->component[pairs.pairs[i].first]] = l->left[l->component[pairs.pairs[i].second]] = 1;
+  for (size_t i = 0; i < pairs.count; i++) {
+    l->left[l->component[pairs.pairs[i].first]] |= CROSSING;
+    l->left[l->component[pairs.pairs[i].second]] |= CROSSING;
+  }
   vxm_free(soup->context, pairs.pairs);
   return status;
 }
@@ -44,7 +49,10 @@ static void tell(leaving *l, const vxm_soup *soup) {
   if (!parts)
     state->union_failures = 0; /* of an earlier round; parts that are followed count once */
   for (size_t c = 0; !parts && c < l->count; c++)
-    state->union_failures += l->left[c];
+    state->union_failures += l->left[c] != 0;
+  state->union_may_succeed = false;
+  for (size_t c = 0; c < l->count; c++)
+    state->union_may_succeed = state->union_may_succeed || l->left[c] == (FAILED | CROSSING);
   for (size_t f = 0; parts && f < soup->face_count; f++)
     if (l->left[l->component[f]] && l->origin[f] != VXM_NO_FACE)
       state->union_failures += vxm_provenance_leave(state->provenance, parts[l->origin[f]]);
@@ -108,8 +116,10 @@ vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *err
   uint64_t *origin;
   vxm_union_report report;
   vxm_status status = vxm_cgal_open(&cgal, "uniting parts", error);
+  vxm_union_options options = {.outward_only = state->union_try.outward_only,
+                               .single_precision = state->options.single_precision};
   if (status == VXM_OK)
-    status = cgal->unite(&soup, &origin, &report, state->soup, state->union_try.outward_only, error);
+    status = cgal->unite(&soup, &origin, &report, state->soup, &options, error);
   if (status != VXM_OK)
     return status;
   status = find_left(state, soup, origin, &report, error);

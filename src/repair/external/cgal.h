@@ -31,6 +31,12 @@ typedef struct vxm_union_report {
       failed_faces; /**< one face of the input for each failed part; a block of the soup's context, or NULL */
 } vxm_union_report;
 
+/** How parts are united. */
+typedef struct vxm_union_options {
+  bool outward_only;     /**< what a part winds round the other way is left out */
+  bool single_precision; /**< the surface has to be right in 32-bit floats, for a file that holds such */
+} vxm_union_options;
+
 /**
  * All take soups whose positions are finite, and count the memory of CGAL against the context's limit.
  * `origin`, where it is not NULL, gets a block of the soup's context with, for each face of the result, the
@@ -61,22 +67,24 @@ typedef struct vxm_cgal {
    *
    * A component that is wound outward is solid where it winds around a place, in whichever direction: what
    * runs through itself loses nothing. But what it winds round inward is left out if that is no more than a
-   * thousandth of it, or with `outward_only`. One that
+   * thousandth of it, or with outward_only. One that
    * is wound inward is a cavity of the smallest solid that it lies inside of without touching it. Where there
    * is none it is one of those that it lies inside of and touches, but for a ten-thousandth of it; where
    * these are none, too, it is subtracted from all that it touches but from those that lie in it; where it
-   * touches nothing it is left as it is and counted as failed, or, no larger than 2^-22 of the largest
-   * coordinate, left out: rounding has turned it over.
+   * touches nothing it is left as it is and counted as failed, or, no thicker than 2^-22 of the largest
+   * coordinate, left out: rounding has turned it over. What a union leaves of components is left out, too,
+   * where it is no thicker and they were.
    *
-   * The surface is cut exactly and then rounded to doubles; no two of its faces meet elsewhere than in
-   * corners and edges they share, and none is without area. Where doubles cannot hold that, the parts
-   * concerned are put on a lattice of up to 2^-22 times the largest coordinate first. Where the union touches
-   * itself, there are several vertices at one position, so that every edge has two faces; but four where the
-   * material is joined around both ends of it, which vxm_cut_nonmanifold parts. Components that touch nothing
-   * keep their faces and vertices, and come in the order of their faces.
+   * The surface is cut exactly and then rounded to doubles, or 32-bit floats; no two of its faces meet
+   * elsewhere than in corners and edges they share, and none is without area. Where the numbers cannot hold
+   * that, the parts concerned are put on a lattice first, of up to 2^-22 times the largest coordinate or, in
+   * floats, 2^-17. Where the union touches itself, there are several vertices at one position, so that every
+   * edge has two faces; but four where the material is joined around both ends of it, which
+   * vxm_cut_nonmanifold parts. Components that touch nothing keep their faces and vertices, and come in the
+   * order of their faces.
    */
   vxm_status (*unite)(vxm_soup **out, uint64_t **origin, vxm_union_report *report, const vxm_soup *soup,
-                      bool outward_only, vxm_error *error);
+                      const vxm_union_options *options, vxm_error *error);
   /**
    * Turns the closed components of a soup so that together they bound a volume: outward, but against the
    * smallest one around that they do not touch. The others stay as they are. *turned counts faces.

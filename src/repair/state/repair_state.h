@@ -91,6 +91,7 @@ typedef struct vxm_repair_state {
   int64_t unfilled_holes;                  /**< holes that were to be filled and could not be */
   int64_t fan_fallbacks;                   /**< holes that were not a module's, but filled by fans */
   int64_t union_failures; /**< parts that were to be united and still cut through themselves or others */
+  bool union_may_succeed; /**< some of those have an inside, so that another try may unite them */
   int64_t emptied_parts;  /**< closed parts of whose inside unions have taken something away */
   int64_t union_tries;    /**< how often parts were united */
   int64_t wrapped_parts;  /**< parts that were wrapped as the union had left them */
