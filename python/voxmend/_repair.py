@@ -96,8 +96,7 @@ def _remaining(report: Any) -> List[str]:
         out.append("%d faces repeat others, where bodies overlap and share a part of their surfaces; level 'manifold' gives "
                    "each body its own, level 'solid' unites them" % report.shared_faces)
     if report.union_failures > 0:
-        out.append("%d parts still cut through others or themselves, and what is open has no inside to unite" %
-                   report.union_failures)
+        out.append("%d parts still cut through others or themselves; open ones have no inside to unite" % report.union_failures)
     if report.emptied_parts > 0:
         out.append("the union has taken away some of what %d closed parts enclosed, as of one that lies in a cavity; remesh "
                    "keeps it" % report.emptied_parts)
