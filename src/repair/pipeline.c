@@ -3,7 +3,7 @@
 #include "repair/bodies/bodies.h"
 #include "repair/bodies/flush_bodies.h"
 #include "repair/bodies/inner_walls.h"
-#include "repair/clean/other_diagonals.h"
+#include "repair/bodies/other_diagonals.h"
 #include "repair/exact/on_lattice.h"
 #include "repair/state/repair_state.h"
 

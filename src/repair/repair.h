@@ -19,7 +19,7 @@
  * (repair/clean/degenerate_faces.c)
  *  - t_junctions: edges that were divided at vertices on them, where that closes edges
  * (repair/weld/t_junctions.c)
- *  - duplicate_faces: faces that repeat an earlier one with the same orientation (repair/clean/duplicates.c)
+ *  - duplicate_faces: faces that repeat an earlier one with the same orientation (repair/bodies/duplicates.c)
  *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
  *  - inner_walls: faces of walls within bodies that went, at VXM_LEVEL_CLOSED and above and before voxelizing
  * (repair/bodies/inner_walls.h)

@@ -44,6 +44,7 @@ for choice in '--labels part' '--color position' '--distance signed' '--coverage
   run 'voxmend convert v.octree -o w.nrrd -q && cmp w.nrrd v.nrrd && voxmend convert v.nrrd -o w.octree -q && cmp w.octree v.octree'
   run 'voxmend convert v.octree -o w.nrrd --window 3:30,10:24,16:38 && voxmend convert v.nrrd -o w2.nrrd --window 3:30,10:24,16:38 -q && cmp w.nrrd w2.nrrd'
 done
+run 'voxmend voxelize in/cavity.off -o l.npy -r 16 --labels part --strict -q && voxmend voxelize in/cavity.off -o l.octree -r 16 --labels part --strict -q' # the cavity needs no voxel
 run 'voxmend voxelize in/rocket.off -o l.octree -r 40 --labels part -q && grep -c name l.octree.json && voxmend convert l.octree -o l.npy -q && grep -c name l.npy.json'
 run 'voxmend info l.octree'
 run 'voxmend combine l.octree or l.octree -o x.octree'

@@ -37,7 +37,7 @@ static void check_surfaces(const vxm_mesh *mesh, const char *name, const vxm_spa
 
 static void check_octree(const vxm_mesh *mesh, const char *name, const vxm_space *space) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  vxm_voxelize_report report[2];
+  vxm_voxelize_report report[2] = {VXM_VOXELIZE_REPORT_INIT, VXM_VOXELIZE_REPORT_INIT};
   for (int e = 0; e < 2; e++) {
     vxm_sparse *sparse;
     options.engine = e ? by_triangles : NULL;

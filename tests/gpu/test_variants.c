@@ -170,7 +170,7 @@ static void test_shared_engine(void **state) {
     assert_memory_equal(out[0], out[1], bytes);
     if (round % 3 == 0) {
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-      vxm_voxelize_report reports[2];
+      vxm_voxelize_report reports[2] = {VXM_VOXELIZE_REPORT_INIT, VXM_VOXELIZE_REPORT_INIT};
       for (int by = 0; by < 2; by++) {
         options.engine = by ? engine : NULL;
         vxm_grid_destroy(engine_solid(soups[model], &space, &options, &reports[by]));

@@ -2,6 +2,7 @@
 #include "voxel/labels/labels.h"
 #include "base/threads.h"
 #include "grid/count_hash.h"
+#include "mesh/geometry.h"
 #include "voxel/fields/field.h"
 #include "voxel/labels/label_overlaps.h"
 #include "voxel/model/model_report.h"
@@ -154,13 +155,26 @@ static void count_tile(size_t task, int worker, void *payload) {
   }
 }
 
+/** Whether a part is wound inward, as the skin of a cavity is, which has no voxel of its own. */
+static bool is_cavity(const vxm_face_labels *labelling, size_t label) {
+  const vxm_soup *soup = labelling->soup;
+  const uint32_t *faces = &labelling->faces[labelling->begin[label - 1]];
+  size_t face_count = labelling->begin[label] - labelling->begin[label - 1], count = 0;
+  const uint32_t *corner = face_count > 0 ? vxm_face(soup, faces[0], &count) : NULL;
+  double volume = 0;
+  for (size_t i = 0; labelling->is_by_part && count > 0 && i < face_count; i++)
+    volume += vxm_face_cone(NULL, soup, faces[i], vxm_position(soup, corner[0]), 1);
+  return volume < 0;
+}
+
 void vxm_labels_warn(const vxm_face_labels *labelling, int64_t voxels, vxm_warnings *warnings) {
   const vxm_label_table *table = &labelling->table;
   size_t empty = 0, first = 0;
-  for (size_t label = table->count; label > 0; label--) {
-    empty += table->voxels[label - 1] == 0;
-    first = table->voxels[label - 1] == 0 ? label : first;
-  }
+  for (size_t label = table->count; label > 0; label--)
+    if (table->voxels[label - 1] == 0 && !is_cavity(labelling, label)) {
+      empty++;
+      first = label;
+    }
   if (labelling->is_untagged)
     vxm_warn(warnings, "the mesh names no groups or materials: all of it has one label, \"unnamed\"");
   if (empty > 0 && voxels > 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "repair/clean/other_diagonals.h"
+#include "repair/bodies/other_diagonals.h"
 
 #include "mesh/duplicate_faces.h"
 #include "mesh/sort.h"

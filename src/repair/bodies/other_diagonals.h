@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Polygons that are there several times, cut into triangles along other diagonals each time. */
-#ifndef VXM_REPAIR_CLEAN_OTHER_DIAGONALS_H
-#define VXM_REPAIR_CLEAN_OTHER_DIAGONALS_H
+#ifndef VXM_REPAIR_BODIES_OTHER_DIAGONALS_H
+#define VXM_REPAIR_BODIES_OTHER_DIAGONALS_H
 
 #include "repair/state/repair_state.h"
 
