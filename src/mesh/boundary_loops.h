@@ -46,10 +46,11 @@ typedef struct vxm_boundary_loops {
  *
  * @param[out] out freed with vxm_boundary_loops_destroy; empty after a failure
  * @param edges    of the same soup, without a vertex map
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Linear time, but for sorting the odd edges, and those at vertices with more than two odd ones. At a vertex
- * with more than 32 of them only those that are near in direction are compared.
+ * with more than 32 of them only those that are near in direction are compared. Where bodies touch, the loops
+ * there are closed by caps for a try.
  */
 vxm_status vxm_boundary_loops_build(vxm_boundary_loops *out, const vxm_soup *soup, const vxm_edges *edges,
                                     vxm_error *error);

@@ -23,7 +23,7 @@ typedef struct vxm_containment {
  * @param face_labels  component of every face, below `count` (vxm_components)
  * @param solid        per component: whether it bounds a volume; the others have and are no parents. NULL =
  * all
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Where soup->face_sets tells of sets, components around it that are of its own set go before others.
  *

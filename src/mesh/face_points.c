@@ -76,6 +76,7 @@ enum { ROWS_MAX = 64 /**< of points on a triangle */ };
 typedef struct spread {
   vxm_point_in_mesh *around;
   const vxm_face_list *list;
+  size_t wanted;
   double gap, per_area; /**< points */
   vxm_points_outside count;
   vxm_error *error;
@@ -96,7 +97,7 @@ static vxm_status count_point(spread *s, const double point[3]) {
 
 static vxm_status count_corners(spread *s, const uint32_t *corner, size_t count) {
   vxm_status status = VXM_OK;
-  for (size_t c = 0; c < count && status == VXM_OK; c++) {
+  for (size_t c = 0; c < count && status == VXM_OK; c += count / (s->wanted + 1) + 1) {
     const double *p = vxm_position(s->list->soup, corner[c]);
     double scale = s->list->scale;
     status = count_point(s, (const double[3]){p[0] * scale, p[1] * scale, p[2] * scale});
@@ -164,6 +165,7 @@ vxm_status vxm_face_points_outside(vxm_point_in_mesh *around, const vxm_face_lis
   double area = area_of(list, step);
   spread s = {.around = around,
               .list = list,
+              .wanted = wanted,
               .gap = gap,
               .per_area = area > 0 ? (double)wanted / area : 0,
               .error = error};

@@ -42,12 +42,13 @@ static bool add_caps(const parting *p, const uint32_t *set_of_edge, double *area
   bool done = true;
   for (size_t l = 0; l < loops->count && done; l++) {
     uint32_t set = set_of_edge[loops->edge[loops->begin[l]]];
-    size_t first = caps.triangle_count;
     if (set == NONE)
       continue;
     done = vxm_caps_add(&caps, loops, l, true, &b->error) == VXM_OK;
     if (done)
-      area[set] += vxm_caps_area(&caps, first, caps.triangle_count);
+      area[set] += vxm_caps_area(&caps, 0, caps.triangle_count);
+    caps.triangle_count = caps.point_count = 0; /* its area is all that is wanted */
+    done = done && vxm_check_cancelled_at(l, b->context, &b->error) == VXM_OK;
   }
   vxm_caps_destroy(&caps);
   return done;

@@ -3,10 +3,10 @@
 
 #include "mesh/boundary_loops.h"
 #include "mesh/disjoint_sets.h"
+#include "mesh/sort.h"
 #include "repair/state/flat_fold.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /** A side along an edge that has not just two opposite ones. */
 typedef struct crowded_side {
@@ -39,6 +39,7 @@ typedef struct parting {
   size_t *body;    /**< per face: another one of its patch, later of its body, or itself; see vxm_set_of */
   uint8_t *cut;    /**< per face that stands for a body: it touches others so */
   body_sums *sums; /**< the same; NULL = not asked for yet */
+  vxm_vec3 *areas; /**< vxm_face_areas */
   crowded_side *sides;
   size_t side_count;
   vxm_error error;
@@ -98,9 +99,7 @@ static size_t list_sides(const parting *p, crowded_side *sides) {
 
 static int by_edge_then_patch(const void *a, const void *b) {
   const crowded_side *s = a, *t = b;
-  if (s->side.edge != t->side.edge)
-    return s->side.edge < t->side.edge ? -1 : 1;
-  return s->patch < t->patch ? -1 : s->patch > t->patch;
+  return vxm_compare_pairs(s->side.edge, s->patch, t->side.edge, t->patch);
 }
 
 static bool find_sides(parting *p) {
@@ -131,7 +130,8 @@ static bool has_fold(const parting *p, size_t begin, size_t end) {
     for (size_t j = i + 1; j < end; j++) {
       const crowded_side *one = &p->sides[i], *other = &p->sides[j];
       if (one->side.forward == other->side.forward && one->patch != other->patch &&
-          vxm_is_flat_fold(p->soup, edge_of(p, &one->side), &one->side, &other->side, p->frame.scale))
+          vxm_is_flat_fold(p->soup, edge_of(p, &one->side), &one->side, &other->side, p->areas,
+                           p->frame.scale))
         return true;
     }
   return false;
@@ -195,9 +195,7 @@ static size_t list_ends(const parting *p, rim_end *ends) {
 
 static int by_vertex(const void *a, const void *b) {
   const rim_end *s = a, *t = b;
-  if (s->vertex != t->vertex)
-    return s->vertex < t->vertex ? -1 : 1;
-  return s->side.edge < t->side.edge ? -1 : s->side.edge > t->side.edge;
+  return vxm_compare_pairs(s->vertex, s->side.edge, t->vertex, t->side.edge);
 }
 
 /** The other vertex of an edge, from here. */
@@ -212,23 +210,17 @@ static bool lie_on_each_other(const parting *p, const rim_end *one, const rim_en
   const vxm_edge *e = edge_of(p, &one->side), *f = edge_of(p, &other->side);
   return (one->side.forward == (e->a == one->vertex)) == (other->side.forward == (f->a == other->vertex)) &&
          vxm_are_parallel(way_along(p, one), way_along(p, other)) &&
-         vxm_are_parallel(vxm_leaves_edge(p->soup, e, &one->side, p->frame.scale),
-                          vxm_leaves_edge(p->soup, f, &other->side, p->frame.scale));
+         vxm_are_parallel(vxm_leaves_edge(p->soup, e, &one->side, p->areas, p->frame.scale),
+                          vxm_leaves_edge(p->soup, f, &other->side, p->areas, p->frame.scale));
 }
 
 static bool measure_bodies(parting *p) {
   p->sums = scratch(p, p->soup->face_count, sizeof *p->sums);
   for (size_t f = 0; p->sums && f < p->soup->face_count && goes_on(p, f); f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(p->soup, f, &count);
-    if (count == 0)
-      continue;
     body_sums *sums = &p->sums[vxm_set_of(p->body, f)];
-    vxm_vec3 area = vxm_polygon_area(p->soup->positions, corner, count, p->frame.scale);
-    vxm_vec3 first = vxm_vec3_between(vxm_position(p->soup, corner[0]), p->frame.centre, p->frame.scale);
-    sums->area += vxm_vec3_length(area);
-    sums->vector_area = vxm_vec3_sum(sums->vector_area, area);
-    sums->volume += vxm_polygon_cone(first, area);
+    sums->area += vxm_vec3_length(p->areas[f]);
+    sums->vector_area = vxm_vec3_sum(sums->vector_area, p->areas[f]);
+    sums->volume += vxm_face_cone(NULL, p->soup, f, p->frame.centre, p->frame.scale);
   }
   return p->error.code == VXM_OK;
 }
@@ -293,9 +285,7 @@ static bool find_owners(parting *p, size_t *owner) {
 
 static int by_body_then_vertex(const void *a, const void *b) {
   const own_vertex *s = a, *t = b;
-  if (s->body != t->body)
-    return s->body < t->body ? -1 : 1;
-  return s->vertex < t->vertex ? -1 : s->vertex > t->vertex;
+  return vxm_compare_pairs(s->body, s->vertex, t->body, t->vertex);
 }
 
 /** Lists (or, with NULL, counts) the corners of bodies at vertices that are others'. */
@@ -326,15 +316,7 @@ static bool add_vertices(parting *p, own_vertex *list, size_t count) {
     }
     list[i].own = (uint32_t)(p->soup->vertex_count - 1);
   }
-  uint8_t **marks[2] = {&p->state->gone, &p->state->used};
-  for (int i = 0; i < 2; i++) {
-    uint8_t *grown = vxm_realloc(p->state->context, *marks[i], p->soup->vertex_count, 1, &p->error);
-    if (!grown)
-      return false;
-    memset(grown + from, 0, p->soup->vertex_count - from);
-    *marks[i] = grown;
-  }
-  return true;
+  return vxm_repair_state_grow_marks(p->state, from, p->soup->vertex_count, &p->error);
 }
 
 static bool give_vertices(parting *p, const size_t *owner) {
@@ -362,7 +344,9 @@ static bool part(parting *p) {
   bool any = false;
   p->body = scratch(p, p->soup->face_count, sizeof *p->body);
   p->cut = scratch(p, p->soup->face_count, sizeof *p->cut);
-  if (!p->body || !p->cut || !find_patches(p) || !find_sides(p) || !find_bodies(p) || !find_touching(p, &any))
+  p->areas = vxm_face_areas(p->state->context, p->soup, p->frame.scale, &p->error);
+  if (!p->body || !p->cut || !p->areas || !find_patches(p) || !find_sides(p) || !find_bodies(p) ||
+      !find_touching(p, &any))
     return false;
   size_t *owner = any ? scratch(p, p->soup->vertex_count, sizeof *owner) : NULL;
   bool done = !any || (owner && find_owners(p, owner) && give_vertices(p, owner));
@@ -398,6 +382,7 @@ vxm_status vxm_part_flush_bodies(vxm_repair_state *state, int64_t *added, vxm_er
                .error = VXM_ERROR_INIT};
   size_t before = state->soup->vertex_count;
   bool done = part(&p);
+  vxm_free(state->context, p.areas);
   vxm_free(state->context, p.sums);
   vxm_free(state->context, p.sides);
   vxm_free(state->context, p.cut);

@@ -19,7 +19,8 @@
  * @param[out] added vertices that there are more
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
- * Linear time; where patches share no edge and no vertex that is all there is to look at.
+ * Linear time, but for sorting; where patches share no edge and no vertex that is all there is to look at. At
+ * an edge with more than 64 sides, or a vertex with more than 64 ends of rims, bodies stay together.
  */
 vxm_status vxm_part_flush_bodies(vxm_repair_state *state, int64_t *added, vxm_error *error);
 

@@ -14,30 +14,36 @@ typedef struct rimmed {
 
 /* ---- Folds ---- */
 
-/** The side of a face along an edge. */
-static vxm_edge_side side_of(const vxm_repair_state *state, size_t face, size_t edge) {
-  const vxm_soup *soup = state->soup;
-  uint64_t c = soup->offsets[face];
-  while (state->edges.sides[c] != edge)
-    c++;
-  return (vxm_edge_side){(uint32_t)edge, soup->indices[c] == state->edges.edges[edge].a, face};
-}
-
 vxm_status vxm_flat_folds_find(uint8_t *fold, bool *any, const vxm_repair_state *state,
                                const size_t (*pair)[2], double scale, vxm_error *error) {
+  enum { FORWARD = 2, BACKWARD = 3 }; /* of an edge's first side, until the second one is seen */
+  const vxm_soup *soup = state->soup;
   *any = false;
-  for (size_t e = 0; e < state->edges.count; e++) {
-    vxm_status status = vxm_check_cancelled_at(e, state->context, error);
-    if (status != VXM_OK)
-      return status;
-    const vxm_edge *edge = &state->edges.edges[e];
-    if (edge->count != 2 || pair[e][0] == pair[e][1] || pair[e][1] == SIZE_MAX)
-      continue;
-    vxm_edge_side one = side_of(state, pair[e][0], e), other = side_of(state, pair[e][1], e);
-    fold[e] = vxm_is_flat_fold(state->soup, edge, &one, &other, scale);
-    *any = *any || fold[e];
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_vec3 *areas = vxm_face_areas(state->context, soup, scale, &local);
+  for (size_t f = 0; areas && f < soup->face_count; f++) {
+    if (vxm_check_cancelled_at(f, state->context, &local) != VXM_OK)
+      break;
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
+      size_t e = state->edges.sides[c];
+      if (e == VXM_NO_EDGE || state->edges.edges[e].count != 2 || pair[e][0] == pair[e][1] ||
+          pair[e][1] == SIZE_MAX)
+        continue;
+      const vxm_edge *edge = &state->edges.edges[e];
+      vxm_edge_side own = {(uint32_t)e, soup->indices[c] == edge->a, f};
+      if (fold[e] == 0) {
+        fold[e] = own.forward ? FORWARD : BACKWARD;
+        continue;
+      }
+      vxm_edge_side first = {(uint32_t)e, fold[e] == FORWARD, pair[e][0]};
+      fold[e] = vxm_is_flat_fold(soup, edge, &first, &own, areas, scale);
+      *any = *any || fold[e];
+    }
   }
-  return VXM_OK;
+  vxm_free(state->context, areas);
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
+  return local.code;
 }
 
 /* ---- Which of them join ---- */

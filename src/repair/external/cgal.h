@@ -67,13 +67,13 @@ typedef struct vxm_cgal {
    *
    * A component that is wound outward is solid where it winds around a place, in whichever direction: what
    * runs through itself loses nothing. But what it winds round inward is left out if that is no more than a
-   * thousandth of it, or with outward_only. One that
-   * is wound inward is a cavity of the smallest solid that it lies inside of without touching it. Where there
-   * is none it is one of those that it lies inside of and touches, but for a ten-thousandth of it; where
-   * these are none, too, it is subtracted from all that it touches but from those that lie in it; where it
-   * touches nothing it is left as it is and counted as failed, or, no thicker than 2^-22 of the largest
-   * coordinate, left out: rounding has turned it over. What a union leaves of components is left out, too,
-   * where it is no thicker and they were.
+   * thousandth of it, or with outward_only. One that is wound inward is a cavity of a solid that it lies
+   * inside of without touching it: the smallest, or where that has a cavity that may overlap it another one
+   * (mesh/voids.h). Where there is none it is one of those that it lies inside of and touches, but for a
+   * ten-thousandth of it; where these are none, too, it is subtracted from all that it touches but from those
+   * that lie in it; where it touches nothing it is left as it is and counted as failed, or, no thicker than
+   * 2^-22 of the largest coordinate, left out: rounding has turned it over. What a union leaves of components
+   * is left out, too, where it is no thicker and they were.
    *
    * The surface is cut exactly and then rounded to doubles, or 32-bit floats; no two of its faces meet
    * elsewhere than in corners and edges they share, and none is without area. Where the numbers cannot hold

@@ -13,15 +13,25 @@ typedef struct vxm_edge_side {
   size_t face;
 } vxm_edge_side;
 
-/** Into which direction a face leaves the edge, of any length. */
+/** Vector areas of all faces (vxm_polygon_area), the caller's to free with vxm_free: of large polygons they
+ * would be added up for each edge. @return NULL after a failure */
+static inline vxm_vec3 *vxm_face_areas(vxm_context *context, const vxm_soup *soup, double scale,
+                                       vxm_error *error) {
+  vxm_vec3 *areas = vxm_alloc(context, soup->face_count, sizeof *areas, error);
+  for (size_t f = 0; areas && f < soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
+    areas[f] = vxm_polygon_area(soup->positions, corner, count, scale);
+  }
+  return areas;
+}
+
+/** Into which direction a face leaves the edge, of any length. @param areas vxm_face_areas */
 static inline vxm_vec3 vxm_leaves_edge(const vxm_soup *soup, const vxm_edge *edge, const vxm_edge_side *side,
-                                       double scale) {
-  size_t count;
-  const uint32_t *corner = vxm_face(soup, side->face, &count);
+                                       const vxm_vec3 *areas, double scale) {
   const double *from = vxm_position(soup, side->forward ? edge->a : edge->b);
   const double *to = vxm_position(soup, side->forward ? edge->b : edge->a);
-  return vxm_vec3_cross(vxm_polygon_area(soup->positions, corner, count, scale),
-                        vxm_vec3_between(to, from, scale));
+  return vxm_vec3_cross(areas[side->face], vxm_vec3_between(to, from, scale));
 }
 
 /** Whether two vectors point the same way, but for the angle that rounding makes. */
@@ -33,8 +43,9 @@ static inline bool vxm_are_parallel(vxm_vec3 u, vxm_vec3 v) {
 
 /** Whether two faces at an edge lie on each other, folded flat. */
 static inline bool vxm_is_flat_fold(const vxm_soup *soup, const vxm_edge *edge, const vxm_edge_side *one,
-                                    const vxm_edge_side *other, double scale) {
-  return vxm_are_parallel(vxm_leaves_edge(soup, edge, one, scale), vxm_leaves_edge(soup, edge, other, scale));
+                                    const vxm_edge_side *other, const vxm_vec3 *areas, double scale) {
+  return vxm_are_parallel(vxm_leaves_edge(soup, edge, one, areas, scale),
+                          vxm_leaves_edge(soup, edge, other, areas, scale));
 }
 
 #endif

@@ -15,8 +15,9 @@ enum {
 
 /** Of the length inside: what is less is not worth the time, or comes of rounding. */
 static const double noticed = 1e-5;
-/** Of the same: what is left hollow is worth a word if it is more. */
+/** Of the same: what is left hollow, or filled, is worth a word if it is more. */
 static const double told = 0.002;
+
 typedef struct crossing {
   double at; /**< along the line */
   uint32_t line;
