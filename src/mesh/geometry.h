@@ -91,6 +91,13 @@ static inline double vxm_polygon_cone(vxm_vec3 corner, vxm_vec3 area) {
   return vxm_vec3_dot(corner, area) / 3.0;
 }
 
+/** Vector area of a face of a soup, as vxm_polygon_area. */
+static inline vxm_vec3 vxm_face_area(const vxm_soup *soup, size_t face, double scale) {
+  size_t count;
+  const uint32_t *corner = vxm_face(soup, face, &count);
+  return vxm_polygon_area(soup->positions, corner, count, scale);
+}
+
 /**
  * The cone from a point to a face of a soup, of positions multiplied by `scale`; nothing without a corner.
  *

@@ -140,13 +140,9 @@ static vxm_status wrap_the_rest(vxm_repair_state *state, bool *changed, vxm_erro
 
 /** Takes apart what touches with its rims, so that holes go round each for itself. */
 static vxm_status part_touching(vxm_repair_state *state, bool *changed, vxm_error *error) {
-  int64_t added = 0;
-  vxm_status status = vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD)
-                          ? vxm_part_flush_bodies(state, &added, error)
-                          : VXM_OK;
-  state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
-  *changed = added > 0;
-  return status;
+  *changed = false;
+  return vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) ? vxm_part_flush_bodies(state, changed, error)
+                                                             : VXM_OK;
 }
 
 /** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were

@@ -295,12 +295,9 @@ static void hand_on(vxm_repair_state *state) {
 
 /** Takes apart what touches with its rims, if patches are not apart, or are only as they touch so. */
 static bool part_touching(parting *p, bool *apart, bool *changed) {
-  int64_t added;
   if (*apart && p->state->edges.against == 0)
     return true;
-  vxm_status status = vxm_part_flush_bodies(p->state, &added, &p->error);
-  p->state->counts[VXM_PASS_CUT_NONMANIFOLD] += added;
-  *changed = added > 0;
+  vxm_status status = vxm_part_flush_bodies(p->state, changed, &p->error);
   return status == VXM_OK && (!*changed || is_apart(p->state, apart, &p->error) == VXM_OK);
 }
 

@@ -365,8 +365,8 @@ static vxm_status are_apart(bool *apart, vxm_repair_state *state, vxm_error *err
   return status == VXM_OK ? vxm_patches_are_apart(apart, &state->patches, state->soup, error) : status;
 }
 
-vxm_status vxm_part_flush_bodies(vxm_repair_state *state, int64_t *added, vxm_error *error) {
-  *added = 0;
+vxm_status vxm_part_flush_bodies(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  *changed = false;
   bool apart;
   vxm_status status = are_apart(&apart, state, error);
   if (status != VXM_OK || apart)
@@ -387,8 +387,9 @@ vxm_status vxm_part_flush_bodies(vxm_repair_state *state, int64_t *added, vxm_er
   vxm_free(state->context, p.sides);
   vxm_free(state->context, p.cut);
   vxm_free(state->context, p.body);
-  *added = (int64_t)(state->soup->vertex_count - before);
-  if (*added > 0)
+  state->counts[VXM_PASS_CUT_NONMANIFOLD] += (int64_t)(state->soup->vertex_count - before);
+  *changed = state->soup->vertex_count > before;
+  if (*changed)
     vxm_repair_state_touch(state);
   if (!done)
     vxm_error_pass(error, &p.error);

@@ -16,12 +16,13 @@
  * way, upon each other, with such faces, if both bound a volume outward. So a surface with slits stays one,
  * and so do sheets.
  *
- * @param[out] added vertices that there are more
+ * Vertices that there are more are counted with those of VXM_PASS_CUT_NONMANIFOLD.
+ *
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Linear time, but for sorting; where patches share no edge and no vertex that is all there is to look at. At
  * an edge with more than 64 sides, or a vertex with more than 64 ends of rims, bodies stay together.
  */
-vxm_status vxm_part_flush_bodies(vxm_repair_state *state, int64_t *added, vxm_error *error);
+vxm_status vxm_part_flush_bodies(vxm_repair_state *state, bool *changed, vxm_error *error);
 
 #endif

@@ -159,12 +159,6 @@ static bool take_patches(orienting *o) {
 
 /* ---- Turning ---- */
 
-static vxm_vec3 area_of(const orienting *o, size_t face) {
-  size_t count;
-  const uint32_t *corner = vxm_face(o->soup, face, &count);
-  return vxm_polygon_area(o->soup->positions, corner, count, o->frame.scale);
-}
-
 static void add_area(patch *p, vxm_vec3 area) {
   p->vector_area = vxm_vec3_sum(p->vector_area, area);
 }
@@ -180,7 +174,7 @@ static bool measure_patches(orienting *o) {
   }
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
     patch *p = &o->patches[o->label[f]];
-    vxm_vec3 area = area_of(o, f);
+    vxm_vec3 area = vxm_face_area(o->soup, f, o->frame.scale);
     p->area += vxm_vec3_length(area);
     add_area(p, area);
   }
@@ -225,7 +219,7 @@ static bool make_consistent(orienting *o) {
     return false;
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
     patch *p = &o->patches[o->label[f]];
-    double area = vxm_vec3_length(area_of(o, f));
+    double area = vxm_vec3_length(vxm_face_area(o->soup, f, o->frame.scale));
     p->area += area;
     p->turned_area += o->turn[f] ? area : 0;
   }
@@ -237,7 +231,7 @@ static bool make_consistent(orienting *o) {
       o->turn[f] ^= 2 * p->turned_area > p->area;
     if (o->turn[f])
       vxm_soup_reverse_face(o->soup, f);
-    add_area(p, area_of(o, f));
+    add_area(p, vxm_face_area(o->soup, f, o->frame.scale));
   }
   return o->error.code == VXM_OK;
 }

@@ -53,12 +53,6 @@ static bool looks_back(const vxm_rimmed_patches *p, const rimmed *patch, size_t 
   return p->turn[face] != (2 * own->turned_area > own->area);
 }
 
-static vxm_vec3 area_of(const vxm_soup *soup, size_t face, double scale) {
-  size_t count;
-  const uint32_t *corner = vxm_face(soup, face, &count);
-  return vxm_polygon_area(soup->positions, corner, count, scale);
-}
-
 static void put_apex(rimmed *patch, const vxm_soup *soup, const vxm_edge *edge) {
   const double *ends[2] = {vxm_position(soup, edge->a), vxm_position(soup, edge->b)};
   for (int i = 0; i < 2; i++)
@@ -71,7 +65,7 @@ static void measure(rimmed *patch, const vxm_rimmed_patches *p, const uint8_t *f
   const vxm_edges *edges = &p->state->edges;
   for (size_t f = 0; f < soup->face_count; f++) {
     rimmed *own = &patch[p->label[f]];
-    double area = vxm_vec3_length(area_of(soup, f, scale));
+    double area = vxm_vec3_length(vxm_face_area(soup, f, scale));
     own->area += area;
     own->turned_area += p->turn[f] ? area : 0;
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
@@ -85,12 +79,14 @@ static void measure(rimmed *patch, const vxm_rimmed_patches *p, const uint8_t *f
     rimmed *own = &patch[p->label[f]];
     if (!own->apex)
       continue;
-    vxm_vec3 area = area_of(soup, f, scale);
-    if (looks_back(p, patch, f))
+    vxm_vec3 area;
+    double cone = vxm_face_cone(&area, soup, f, own->apex, scale);
+    if (looks_back(p, patch, f)) {
       area = (vxm_vec3){-area.x, -area.y, -area.z};
-    const double *corner = vxm_position(soup, soup->indices[soup->offsets[f]]);
+      cone = -cone;
+    }
     own->vector_area = vxm_vec3_sum(own->vector_area, area);
-    own->volume += vxm_polygon_cone(vxm_vec3_between(corner, own->apex, scale), area);
+    own->volume += cone;
   }
 }
 

@@ -18,11 +18,8 @@ typedef struct vxm_edge_side {
 static inline vxm_vec3 *vxm_face_areas(vxm_context *context, const vxm_soup *soup, double scale,
                                        vxm_error *error) {
   vxm_vec3 *areas = vxm_alloc(context, soup->face_count, sizeof *areas, error);
-  for (size_t f = 0; areas && f < soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(soup, f, &count);
-    areas[f] = vxm_polygon_area(soup->positions, corner, count, scale);
-  }
+  for (size_t f = 0; areas && f < soup->face_count; f++)
+    areas[f] = vxm_face_area(soup, f, scale);
   return areas;
 }
 
